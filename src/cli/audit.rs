@@ -24,7 +24,7 @@ use stickslip_debugger::explain::report;
 use stickslip_debugger::explain::strain;
 use stickslip_debugger::record::snapshot::Snapshot;
 use stickslip_scene::Scene;
-use stickslip_scene::number::{shortest, sig4};
+use stickslip_scene::number::{shortest, sig2, sig4};
 use stickslip_scene::readers::FileKind;
 use stickslip_scene::solver::solver;
 
@@ -288,12 +288,12 @@ fn table(name: &str, model: &Model, audit: &Audit) -> String {
     }
     if let Some(inside) = &audit.inside {
         text += &format!(
-            "  also: increment {} (load {}): master node {} penetrates {} by {:.3e}; contact tests only slave nodes\n",
+            "  also: increment {} (load {}): master node {} penetrates {} by {}; contact tests only slave nodes\n",
             inside.increment,
             shortest(inside.load_factor),
             model.nodes[inside.node].name,
             model.bodies[inside.body].name,
-            inside.depth
+            sig4(inside.depth)
         );
     }
     text
@@ -315,10 +315,10 @@ fn row(model: &Model, law: JudgedLaw, found: &WorstFinding) -> String {
         ""
     };
     format!(
-        "  {:<11}  {:<8.1e}  {:<8.1e}  {}, {node}{over}\n",
+        "  {:<11}  {:<8}  {:<8}  {}, {node}{over}\n",
         law.name(),
-        found.finding.amount,
-        found.finding.allowed,
+        sig2(found.finding.amount),
+        sig2(found.finding.allowed),
         place(found)
     )
 }

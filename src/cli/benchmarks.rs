@@ -3,7 +3,7 @@
 use super::base::{Error, Exit, notify};
 use super::interrupt::Interrupt;
 use super::outputs::{OutputArgs, Outputs};
-use stickslip_scene::number::sig6;
+use stickslip_scene::number::{sig2, sig6};
 use stickslip_scene::shown::aligned;
 use stickslip_study::Watch;
 use stickslip_study::benchmarks::{Assessment, Benchmark, Benchmarks, ComparedBenchmark, table};
@@ -63,15 +63,14 @@ fn report_table(list: &Benchmarks, compared: &[ComparedBenchmark]) {
 
 fn row(benchmark: &Benchmark, compared: &ComparedBenchmark) -> Vec<String> {
     let some = |value: Option<f64>, show: fn(f64) -> String| value.map_or_else(String::new, show);
-    let small = |value: f64| format!("{value:.1e}");
     vec![
         benchmark.case(),
         benchmark.what.clone(),
         sig6(benchmark.value),
         some(compared.ours, sig6),
-        some(compared.error, small),
-        small(benchmark.within),
-        some(compared.drift, small),
+        some(compared.error, sig2),
+        sig2(benchmark.within),
+        some(compared.drift, sig2),
         compared.standing.to_string(),
     ]
 }

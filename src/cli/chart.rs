@@ -6,7 +6,7 @@ use super::outputs::Outputs;
 use super::sweep::{Report, SweepArgs, failed};
 use std::path::{Path, PathBuf};
 use stickslip_core::words::counted;
-use stickslip_scene::number::sig6;
+use stickslip_scene::number::{sig2, sig6, significant};
 use stickslip_scene::readers::{FileKind, mistaken};
 use stickslip_scene::shown::aligned;
 use stickslip_study::chart_file::{Chart, Truth};
@@ -166,9 +166,9 @@ fn lines(chart: &Precision) -> Vec<String> {
             ),
             chart.series[point.series].clone(),
             point.name.clone(),
-            point
-                .error
-                .map_or_else(String::new, |error| format!("{error:.2e}{round_off}")),
+            point.error.map_or_else(String::new, |error| {
+                format!("{}{round_off}", significant(error, 3))
+            }),
             sig6((point.seconds * 1e5).round() / 1e5),
             point.factorizations.to_string(),
             point.majors.to_string(),
@@ -181,7 +181,8 @@ fn lines(chart: &Precision) -> Vec<String> {
     lines.push("* on the Pareto front of cost and error   + within the target error".to_owned());
     if chart.points.iter().any(Point::is_round_off) {
         lines.push(format!(
-            "= round-off: errors below {ROUND_OFF:.1e} are equal"
+            "= round-off: errors below {} are equal",
+            sig2(ROUND_OFF)
         ));
     }
     lines.extend(chart.verdict());

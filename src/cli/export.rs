@@ -36,13 +36,13 @@ use stickslip_study::pen;
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
-.svg, .png: the deformed shape of a scene or a snapshot with modes, forces and gaps, and the timeline; with --only, the
+.svg, .png: the deformed shape of a scene or a snapshot with modes, forces and gaps, and the timeline; with --only, the \
 shape, the timeline, the load over a monitor (chart), or the force of a contact in its friction cone (cone).
-.ron: the scene as opened; for a Gmsh mesh, a scene that imports it, to be edited; with --frozen, the interface
+.ron: the scene as opened; for a Gmsh mesh, a scene that imports it, to be edited; with --frozen, the interface \
 problem that is solved next, as a separate scene.
-.dat, .mtx, .h5: the same interface problem for other solvers: for Siconos, as Matrix Market files
+.dat, .mtx, .h5: the same interface problem for other solvers: for Siconos, as Matrix Market files \
 (NAME_W.mtx, NAME_q.mtx, NAME_mu.mtx), for fclib.
-.vtu: the state for ParaView (stickslip run --vtu writes all states); of a CalculiX run (.cel) the mesh of its deck, with
+.vtu: the state for ParaView (stickslip run --vtu writes all states); of a CalculiX run (.cel) the mesh of its deck, with \
 the switches, last status and pressure of each slave node.
 .cast: a journal as a film for asciinema.
 

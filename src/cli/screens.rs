@@ -9,8 +9,8 @@ use stickslip_study::pen;
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
-Without -o, lists the main screens with the scene and the keys that lead to each. With -o, draws them, each at all sizes and in
-all colours; or only those named; or the screen of SCENE after the keys of --keys. Keys are named as on page `keys` and separated
+Without -o, lists the main screens with the scene and the keys that lead to each. With -o, draws them, each at all sizes and in \
+all colours; or only those named; or the screen of SCENE after the keys of --keys. Keys are named as on page `keys` and separated \
 by blanks; a command line ends with Enter: --keys 'c d', --keys ':goto 3 Enter e'. Files: DIR/NAME-80x24-dark.png.")]
 pub struct Args {
     /// A main screen; with --keys, a scene

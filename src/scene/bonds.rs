@@ -3,6 +3,7 @@
 use super::Scene;
 use crate::format::contact_law::ContactLaw;
 use crate::format::spec::SlaveSpec;
+use crate::number::sig4;
 use std::collections::HashSet;
 use stickslip_core::model::{Contact, Model, Surface};
 use stickslip_core::words::counted;
@@ -98,8 +99,8 @@ fn range(values: &[f64]) -> String {
     let least = values.iter().copied().fold(f64::INFINITY, f64::min);
     let largest = values.iter().copied().fold(0.0, f64::max);
     match least == largest {
-        true => format!("{least:.4e}"),
-        false => format!("{least:.4e} to {largest:.4e}"),
+        true => sig4(least),
+        false => format!("{} to {}", sig4(least), sig4(largest)),
     }
 }
 

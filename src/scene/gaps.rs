@@ -2,6 +2,7 @@
 //! effect of `settings.initial_gaps`.
 
 use crate::geometry::distance_to_segment;
+use crate::number::sig4;
 use crate::pressed;
 use std::collections::HashSet;
 use stickslip_core::contact::element::SurfaceElement;
@@ -84,14 +85,9 @@ pub fn words(model: &Model) -> Vec<String> {
                 true => 0.0,
                 false => gap,
             });
-        // Distinguishes an exact 0 from a gap that rounds to it.
-        let text = |gap: f64| match gap {
-            0.0 => "0".to_owned(),
-            gap => format!("{gap:.4}"),
-        };
         let range = match least == largest {
-            true => text(least),
-            false => format!("{} to {}", text(least), text(largest)),
+            true => sig4(least),
+            false => format!("{} to {}", sig4(least), sig4(largest)),
         };
         let inside = match found.inside.len() {
             0 => String::new(),
@@ -126,8 +122,9 @@ pub fn warnings(model: &Model) -> Vec<String> {
         };
         let start = if count == 1 { "starts" } else { "start" };
         all.push(format!(
-            "{count} of {} slave nodes {start} inside surface {name}, by at most {deepest:.3e} ({names}): {next}",
-            found.nodes
+            "{count} of {} slave nodes {start} inside surface {name}, by at most {} ({names}): {next}",
+            found.nodes,
+            sig4(deepest)
         ));
     }
     all.extend(unheld(model));

@@ -5,6 +5,7 @@ use crate::chartframe::ChartFrame;
 use crate::theme::Theme;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
+use ratatui::style::Modifier;
 
 /// Width of the axis with its labels.
 pub const LABELS: u16 = 7;
@@ -150,7 +151,11 @@ fn axis(buffer: &mut Buffer, frame: ChartFrame, scale: &Scale, theme: &Theme) {
         let power = scale.top as i32 - decade as i32;
         let row = scale.height(10f64.powi(power)).floor() as u16;
         let row = row.min(scale.rows - 1);
-        frame.tick(buffer, row, &format!("1e{power}"), theme.faint);
+        let label = match power {
+            0 => "1".into(),
+            _ => format!("1e{power}"),
+        };
+        frame.tick(buffer, row, &label, theme.faint);
     }
     if scale.zero {
         frame.tick(buffer, scale.rows, "0", theme.faint);
@@ -171,7 +176,8 @@ fn limit(
             .cell(buffer, x, height)
             .is_some_and(|cell| cell.symbol() != " ");
         if !taken {
-            frame.mark(buffer, (x, height), "┄", theme.warning);
+            let style = theme.warning.remove_modifier(Modifier::UNDERLINED);
+            frame.mark(buffer, (x, height), "┄", style);
         }
     }
 }

@@ -252,11 +252,11 @@ impl<'a> View<'a> {
         }
     }
 
-    /// A value with ten digits ([`number::long`]), or a dash.
+    /// A value with ten digits ([`number::shortest`]), or a dash.
     pub fn long(&self, value: f64) -> String {
         match self.is_absent(value) {
             true => number::UNREPORTED.into(),
-            false => number::long(value),
+            false => number::shortest(value),
         }
     }
 

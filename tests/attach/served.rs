@@ -493,7 +493,7 @@ fn a_lagged_t_max_is_inferred_from_the_iterations_of_a_solver() {
     let page = page_of_failure("osc-lag4", "");
     assert!(page.contains(lag), "{page}");
     assert!(
-        page.contains("new T_max of a  a opens   ΔF_n = -5.6209e0"),
+        page.contains("new T_max of a  a opens   ΔF_n = -5.621"),
         "{page}"
     );
 }

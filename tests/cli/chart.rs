@@ -107,7 +107,7 @@ fn a_run_that_fails_is_a_row_and_a_cross_on_the_rail() {
     assert_eq!(table[0]["status"], "whole");
     assert!(number(&table[0], "error") < 1e-8, "{table:?}");
     // Of 0.01, the increment was cut six times, down to the least.
-    assert_eq!(table[1]["status"], "major-limit at load 0.00015625");
+    assert_eq!(table[1]["status"], "major-limit at load 1.5625e-4");
     assert!(table[1]["error"].is_empty() && table[1]["front"] == "false");
     let svg = std::fs::read_to_string(directory.path().join("a.svg")).unwrap();
     assert!(

@@ -8,7 +8,7 @@ use std::io::{BufRead, BufReader};
 use std::path::Path;
 use std::process::{Output, Stdio};
 use stickslip::manual;
-use stickslip::scene::number::shortest;
+use stickslip::scene::number::{shortest, sig2};
 
 const SNAPSHOT: &str = "snapshots/01-lets-go-and-slides-back.ron";
 const BRANCHES: &str = "tests/findings/moves-to-another-equilibrium.ron";
@@ -363,7 +363,7 @@ fn an_audit_agrees_with_its_table_and_marked_increments_do_not_count() {
             finding["increment"],
             shortest(finding["load"].as_f64().unwrap())
         );
-        let amount = format!("{:.1e}", finding["amount"].as_f64().unwrap());
+        let amount = sig2(finding["amount"].as_f64().unwrap());
         assert!(
             row.contains(&place) && row.contains(&amount),
             "{row} {finding}"

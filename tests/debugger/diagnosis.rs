@@ -207,11 +207,11 @@ fn residuals_that_do_not_fall_name_the_node_and_what_changes_instead_of_a_rate()
         panic!("three causes");
     };
     assert!(
-        hops.contains("4 major iterations lie between 1.0e-4 and 1.0e-2"),
+        hops.contains("4 major iterations lie between 1e-4 and 0.01"),
         "{hops}"
     );
     let (node, body) = (&model.nodes[node].name, &model.bodies[0].name);
-    let named = format!("2.500e0 at node {node} of {body} ");
+    let named = format!("2.5 at node {node} of {body} ");
     assert!(largest.contains(&named), "{largest}");
     let other = &model.nodes[model.contacts[1].node].name;
     let changes = format!("major 4: {other} sliding → free");

@@ -244,3 +244,41 @@ fn the_largest_load_on_the_path_is_named_where_the_search_ends() {
     let load: f64 = load.parse().unwrap();
     assert!((load - highest).abs() < 1e-5, "{load} {highest}");
 }
+
+/// The path may also end where contacts change, or in an element that turns inside out: the load lies between the last increment and
+/// the one that failed.
+#[test]
+fn the_end_of_the_path_is_named_where_contacts_change_or_an_element_is_inverted() {
+    for (file, up_to, beyond) in [
+        (
+            "tests/findings/path-ends-where-a-node-touches.ron",
+            "the equilibrium path ends at load ",
+            "where modes change (q.3 free → fixed); no state was found beyond it",
+        ),
+        (
+            "tests/findings/path-ends-in-an-inverted-element.ron",
+            "equilibrium exists on this path up to load ",
+            "beyond it element 1 of q at ",
+        ),
+    ] {
+        let (code, reason, table) = told(&[file]);
+        assert_eq!(code, 3, "{reason}");
+        let named = format!("why: limit load: {up_to}");
+        let mut lines = reason.lines().map(str::trim);
+        let found = lines.find_map(|line| line.strip_prefix(&*named));
+        let (load, rest) = found
+            .unwrap_or_else(|| panic!("{reason}"))
+            .split_once([',', ';'])
+            .unwrap();
+        assert!(rest.trim().starts_with(beyond), "{rest}");
+        let load: f64 = load.parse().unwrap();
+        let last: f64 = rows(&table).last().unwrap()["load"].parse().unwrap();
+        let failed = reason.lines().find(|line| line.contains("in attempt"));
+        let failed = failed.unwrap().split_once("(load ").unwrap().1;
+        let failed: f64 = failed.split_once(')').unwrap().0.parse().unwrap();
+        assert!(
+            last - 1e-6 < load && load < failed,
+            "{last} {load} {failed}"
+        );
+    }
+}

@@ -203,7 +203,7 @@ fn a_state_that_the_judge_refuses_has_a_page_with_the_law_the_node_and_what_is_a
         "cone",
         name.as_str(),
         "F_t 0.7 (limit 0.5)",
-        "limit 1.0e-9",
+        "limit 1e-9",
         "Try 1: ✓ ",
         "a finer mesh: --set refine=2",
     ] {

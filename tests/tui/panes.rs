@@ -152,7 +152,7 @@ fn where_no_state_is_consistent_the_screen_says_which_condition_fails_by_least()
         text.contains("none of 4 assignments is consistent"),
         "{text}"
     );
-    assert!(text.contains("\"no tension\" at a by 3.2258e-1"), "{text}");
+    assert!(text.contains("\"no tension\" at a by 0.3226"), "{text}");
     assert!(!text.contains("Enter starts"), "{text}");
 }
 

@@ -166,7 +166,7 @@ fn branches_breakpoints_and_watches_are_told_in_the_message_line() {
         ),
         (":", "watch f_n", "f_n beam.5 = -5.75"),
         ("S m s", "", "(in the new branch b2: beam.5 sliding)"),
-        ("s", "", "in b2: beam.5 sliding   f_n beam.5 = 5."),
+        ("s", "", "in b2: beam.5 sliding   f_n beam.5 = 0.005"),
         ("[", "", "b1: start (cycle)"),
         ("]", "", "in b2: beam.5 sliding"),
         (

@@ -294,8 +294,8 @@ fn notes_go_with_the_next_key_and_errors_with_the_next_success() {
 fn a_watch_stands_there_once_whatever_is_looked_at_then() {
     let mut debugger = debugger(FLOOR);
     debugger.type_keys("s s : w a t c h Space f _ n Enter");
-    let value = "f_n beam.5 = 4.226497e-3";
-    let count = |debugger: &Debugger| debugger.text(120, 40).matches("4.226497e-3").count();
+    let value = "f_n beam.5 = 0.004226497308";
+    let count = |debugger: &Debugger| debugger.text(120, 40).matches(value).count();
     assert!(
         debugger.text(120, 40).contains(value),
         "{}",

@@ -3,6 +3,7 @@
 use stickslip_core::contact::table2::{Rule, Test, TestedQuantity};
 use stickslip_core::linear::norms::Norms;
 use stickslip_core::step::event::Event;
+use stickslip_scene::number::{sig2, sig4};
 
 /// Describes the accuracy that round-off permits; `None` if it is sufficient.
 pub fn left(norms: &Norms) -> Option<String> {
@@ -19,7 +20,8 @@ pub fn left(norms: &Norms) -> Option<String> {
 pub fn raised(tolerance: f64, reached: f64) -> Option<String> {
     (reached > tolerance).then(|| {
         format!(
-            "settings.tolerance {tolerance:.0e} is below the round-off of this scene: increments were accepted at errors up to {reached:.1e}"
+            "settings.tolerance {tolerance:.0e} is below the round-off of this scene: increments were accepted at errors up to {}",
+            sig2(reached)
         )
     })
 }
@@ -30,11 +32,14 @@ pub fn sweeps(event: &Event) -> String {
         None => "sweeps".to_owned(),
         Some(test) if test.tested == TestedQuantity::Error => {
             format!(
-                "sweeps; the natural map of the forces is {:.1e}",
-                test.value
+                "sweeps; the natural map of the forces is {}",
+                sig2(test.value)
             )
         }
-        Some(test) => format!("sweeps; the last one changed forces by {:.3e}", test.value),
+        Some(test) => format!(
+            "sweeps; the last one changed forces by {}",
+            sig4(test.value)
+        ),
     }
 }
 
@@ -52,7 +57,8 @@ pub fn settled(event: &Event) -> Option<String> {
 /// Describes forces that were accepted with this natural map.
 pub fn not_unique(error: f64) -> String {
     format!(
-        "the modes do not determine the contact forces; those of the sweeps satisfy the contact laws to {error:.1e} (natural map)"
+        "the modes do not determine the contact forces; those of the sweeps satisfy the contact laws to {} (natural map)",
+        sig2(error)
     )
 }
 

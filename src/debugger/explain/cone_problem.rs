@@ -11,6 +11,7 @@ use stickslip_core::interface::cone_census;
 use stickslip_core::model::{Mode, Model};
 use stickslip_core::step::event::Event;
 use stickslip_core::step::solver::ReportedProblem;
+use stickslip_scene::number::sig4;
 
 /// Maximum number of contacts, because the matrix is dense.
 const MOST: usize = 500;
@@ -86,13 +87,14 @@ fn counts(state: &[ConeContact]) -> String {
 /// A contact of the state in one line.
 fn words(model: &Model, slave: usize, contact: &ConeContact) -> String {
     let [f_n, f_1, f_2] = contact.force;
+    let (normal, shear) = (sig4(f_n), sig4(f_1.hypot(f_2)));
     let name = names::slave(model, slave);
     let mode = names::mode(contact.mode);
     match contact.mode {
-        Mode::Free => format!("{name} {mode}, gap {:.3e}", contact.motion[0]),
-        Mode::Fixed => format!("{name} {mode}, F_n {f_n:.4e}, |F_t| {:.4e}", f_1.hypot(f_2)),
+        Mode::Free => format!("{name} {mode}, gap {}", sig4(contact.motion[0])),
+        Mode::Fixed => format!("{name} {mode}, F_n {normal}, |F_t| {shear}"),
         Mode::Sliding => format!(
-            "{name} {mode} with friction at {:.0}°, F_n {f_n:.4e}",
+            "{name} {mode} with friction at {:.0}°, F_n {normal}",
             f_2.atan2(f_1).to_degrees()
         ),
     }

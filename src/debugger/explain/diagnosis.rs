@@ -18,6 +18,7 @@ use stickslip_core::model::{BoundUpdate, SlipCount};
 use stickslip_core::model::{Mode, Model};
 use stickslip_core::strategy::method;
 use stickslip_core::words;
+use stickslip_scene::number::sig4;
 use stickslip_scene::shown::{aligned, first_of};
 
 /// Maximum number of nodes of a diagnosed problem: each iteration of its cycle requires dense solves of twice
@@ -546,7 +547,7 @@ fn push_row<'a>(
         minor.to_string(),
         cause,
         effect,
-        format!("{what} = {value:.4e}"),
+        format!("{what} = {}", sig4(value)),
     ]
 }
 
@@ -596,10 +597,10 @@ pub(super) fn census_words<'a>(census: &Census, name: &impl Fn(usize) -> &'a str
             .worst()
             .map_or(String::new(), |(place, margin)| {
                 format!(
-                    "; tightest condition: {} at {}, margin {:.4e}",
+                    "; tightest condition: {} at {}, margin {}",
                     condition_words(margin.condition),
                     name(place),
-                    margin.value
+                    sig4(margin.value)
                 )
             });
         let ties = match found.ties.as_slice() {
@@ -618,11 +619,11 @@ pub(super) fn census_words<'a>(census: &Census, name: &impl Fn(usize) -> &'a str
     lines.extend(differing(census, name));
     if let Some((answer, place, margin)) = &census.nearest {
         lines.push(format!(
-            "  nearest: {}, which violates \"{}\" at {} by {:.4e}",
+            "  nearest: {}, which violates \"{}\" at {} by {}",
             answer.letters(),
             condition_words(margin.condition),
             name(*place),
-            -margin.value
+            sig4(-margin.value)
         ));
     }
     lines
@@ -642,10 +643,11 @@ fn differing<'a>(census: &Census, name: &impl Fn(usize) -> &'a str) -> Vec<Strin
         }
         let each = (0..all.len().min(MOST_TOLD)).map(|number| {
             let node = of(number);
-            let (does, f_n, f_t) = (assumed_words(node.assumed), node.f_n, node.f_t);
+            let does = assumed_words(node.assumed);
+            let [gap, f_n, f_t] = [node.gap, node.f_n, node.f_t].map(sig4);
             match node.assumed {
-                AssumedMode::Free => format!("{does} in {}, gap {:.4e}", number + 1, node.gap),
-                _ => format!("{does} in {}, F_n {f_n:.4e}, F_t {f_t:.4e}", number + 1),
+                AssumedMode::Free => format!("{does} in {}, gap {gap}", number + 1),
+                _ => format!("{does} in {}, F_n {f_n}, F_t {f_t}", number + 1),
             }
         });
         lines.push(format!(

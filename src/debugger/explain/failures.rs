@@ -12,6 +12,7 @@ use stickslip_core::linear::singular::{LooseMotion, RigidMotion, Singular};
 use stickslip_core::model::Model;
 use stickslip_core::step::event::Failure;
 use stickslip_core::words::{counted, times};
+use stickslip_scene::number::{sig2, sig4};
 use stickslip_scene::shown::first_of;
 
 /// Maximum number of nodes or motions named.
@@ -37,7 +38,9 @@ pub fn describe(model: &Model, failure: &Failure) -> String {
             relative,
             interface,
         } => format!(
-            "no convergence within {limit} major iterations; relative residual {relative:.3e}, interface {interface:.3e}"
+            "no convergence within {limit} major iterations; relative residual {}, interface {}",
+            sig4(*relative),
+            sig4(*interface)
         ),
         Failure::MajorCycle(round) => major_cycle(model, round),
         Failure::NoAnswer { first, tried } => {
@@ -70,7 +73,7 @@ pub fn describe(model: &Model, failure: &Failure) -> String {
             "the equations are singular although every body is held: a limit point, or redundant constraints".into()
         }
         Failure::Diverged { relative } => {
-            format!("diverged, relative residual {relative:.3e}")
+            format!("diverged, relative residual {}", sig4(*relative))
         }
         Failure::Refused(found) => {
             format!("refused: {}", judged::finding(model, found))
@@ -99,13 +102,14 @@ pub fn describe(model: &Model, failure: &Failure) -> String {
             "the path measure (history.arc) does not change with the load, so the increment has no size".into()
         }
         Failure::RoundOff { noise } => format!(
-            "double precision is not sufficient for this scene: the round-off of its stiffest forces is {noise:.1e} of the loads; the limit is {:.0e}",
+            "double precision is not sufficient for this scene: the round-off of its stiffest forces is {} of the loads; the limit is {:.0e}",
+            sig2(*noise),
             Norms::LOUDEST
         ),
         Failure::OverConstrained { slave: s, gap } => format!(
-            "{} penetrates by {:.3e}, but neither the node nor its surface can move",
+            "{} penetrates by {}, but neither the node nor its surface can move",
             slave(model, *s),
-            -gap
+            sig4(-gap)
         ),
     }
 }

@@ -4,7 +4,7 @@ use stickslip_core::linear::stability::Stability;
 use stickslip_core::model::Model;
 use stickslip_core::step::event::Event;
 use stickslip_core::step::watch::StabilityLoss;
-use stickslip_scene::number::shortest;
+use stickslip_scene::number::{shortest, sig2, sig4};
 
 /// The motions that lead away from an unstable state.
 pub fn leads_away(stability: Stability) -> String {
@@ -25,7 +25,9 @@ pub fn jump(motion: f64, predicted: f64, unstable: Option<Stability>) -> String 
             leads_away(stability)
         ),
         None => format!(
-            "a jump to another branch: the motion is {motion:.3e}, while the tangent and the previous increments predict {predicted:.1e}"
+            "a jump to another branch: the motion is {}, while the tangent and the previous increments predict {}",
+            sig4(motion),
+            sig2(predicted)
         ),
     }
 }

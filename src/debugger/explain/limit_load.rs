@@ -1,7 +1,8 @@
 //! The limit load: where a body becomes loose, and why (friction is used up, or no contact presses against the motion any more),
 //! or where the equilibrium path has its largest load.
 //!
-//! **Largest load.** From the last equilibrium, follows the path by arc length until the load falls.
+//! **Largest load.** From the last equilibrium, follows the path by arc length until the load falls, the path ends at a change of
+//! contacts, or an element is turned inside out.
 //!
 //! **Loose body.** Repeats the failed increment in smaller steps ([`super::load_limit_probe`]). In the last equilibrium, computes the remaining
 //! resistance of each contact of the body against the free motion. With v the relative velocity, friction resists with at
@@ -12,17 +13,21 @@
 
 use super::load_limit_probe::{LoadLimitProbe, reach};
 use super::rigid_motion::BodyMotion;
+use super::{names, strain};
 use std::collections::HashSet;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use stickslip_core::contact::record::ContactRecord;
+use stickslip_core::fem::deformation::PointDeformation;
 use stickslip_core::linear::singular::{RigidMotion, Singular};
 use stickslip_core::model::{Body, Mode, Model};
+use stickslip_core::step::arc_state::Change;
 use stickslip_core::step::drive::{RunEnd, Until};
 use stickslip_core::step::event::{Failure, Outcome};
 use stickslip_core::step::state::State;
 use stickslip_core::step::stepper::Stepper;
 use stickslip_scene::number::{sig4, sig6};
+use stickslip_scene::shown::first_of;
 
 /// Fraction of the friction or of the contact forces below which nothing is left.
 const LEFT: f64 = 1e-2;
@@ -31,7 +36,7 @@ const LEFT: f64 = 1e-2;
 const FIRST_STEP: f64 = 1e-4;
 /// Maximum number of increments along the path, and of minor iterations in all.
 const MOST_STEPS: u32 = 40;
-const MOST_MINORS: u64 = 600;
+const MOST_MINORS: u64 = 2000;
 /// Fall of the load, as a fraction of the largest of the history, above the errors of equilibrium.
 const FALL: f64 = 1e-6;
 
@@ -52,10 +57,23 @@ impl PathPoint {
     }
 }
 
-/// The largest load on the path from the last equilibrium, before it falls while the displacements go on. `None` if it does not fall
-/// within [`MOST_STEPS`] increments, or if the path reaches the load of the failed increment. The stepper's final state is
-/// unspecified.
-fn largest_load(stepper: &mut Stepper, state: &State, stop: &dyn Fn() -> bool) -> Option<f64> {
+/// How the load on a path stops rising.
+enum PathEnd {
+    /// It falls while the displacements go on.
+    Falls,
+    /// These contacts change, and no modes continue the path.
+    Ends(Arc<Vec<Change>>),
+    /// An element is inverted.
+    Inverts(PointDeformation),
+}
+
+/// The largest load on the path from the last equilibrium, and how it ends. `None` if it does not end within [`MOST_STEPS`]
+/// increments, or if the path reaches the load of the failed increment. The stepper's final state is unspecified.
+fn largest_load(
+    stepper: &mut Stepper,
+    state: &State,
+    stop: &dyn Fn() -> bool,
+) -> Option<(f64, PathEnd)> {
     let model = stepper.model().clone();
     let along = state.along_path(&model, FIRST_STEP * model.length)?;
     let ahead = along.way.as_ref()?.ahead;
@@ -88,7 +106,38 @@ fn largest_load(stepper: &mut Stepper, state: &State, stop: &dyn Fn() -> bool) -
         }
         ControlFlow::Continue(())
     });
-    matches!(end, RunEnd::Stopped(true)).then_some(best)
+    let way = stepper.state().way.as_ref()?;
+    let how = match end {
+        RunEnd::Stopped(true) => PathEnd::Falls,
+        RunEnd::Failed(Failure::PathReversal) if way.turned => PathEnd::Ends(way.next.clone()),
+        RunEnd::Failed(Failure::Inverted(point)) => PathEnd::Inverts(point),
+        _ => return None,
+    };
+    Some((best, how))
+}
+
+/// Describes the largest load on a path.
+fn words((load, how): &(f64, PathEnd), model: &Model) -> String {
+    let load = sig6(*load);
+    match how {
+        PathEnd::Falls => format!(
+            "limit load: equilibrium exists on this path up to load {load}; beyond it the load falls along the path"
+        ),
+        PathEnd::Ends(changes) => {
+            let change = |change: &Change| {
+                let [from, to] = [change.from, change.to].map(names::mode);
+                format!("{} {from} → {to}", names::slave(model, change.contact))
+            };
+            format!(
+                "limit load: the equilibrium path ends at load {load}, where modes change ({}); no state was found beyond it",
+                first_of(changes.iter().map(change), 3, ", ")
+            )
+        }
+        PathEnd::Inverts(point) => format!(
+            "limit load: equilibrium exists on this path up to load {load}; beyond it {} is inverted",
+            strain::place(model, point)
+        ),
+    }
 }
 
 /// Resistance of the remaining contacts against a motion.
@@ -115,11 +164,8 @@ pub fn limit_load(
         if state.sub_increment.cut == 0 {
             return None;
         }
-        let load = largest_load(stepper, state, stop)?;
-        return Some(format!(
-            "limit load: equilibrium exists on this path up to load {}; beyond it the load falls along the path",
-            sig6(load)
-        ));
+        let found = largest_load(stepper, state, stop)?;
+        return Some(words(&found, stepper.model()));
     };
     let found = reach(stepper, state, stop)?;
     let LoadLimitProbe { load, from, .. } = found;

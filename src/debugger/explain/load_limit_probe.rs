@@ -11,7 +11,7 @@ use stickslip_core::step::event::{Failure, MotionEvent, Outcome};
 use stickslip_core::step::intervene::Intervention;
 use stickslip_core::step::state::State;
 use stickslip_core::step::stepper::Stepper;
-use stickslip_scene::number::{shortest, sig6};
+use stickslip_scene::number::{shortest, sig2, sig6};
 
 /// Smallest step, as a fraction of the increment.
 const FINEST: f64 = 1.0 / 4096.0;
@@ -52,7 +52,10 @@ impl LoadLimitProbe {
                     false => failures::describe(model, failure),
                 };
                 let far = match *load == self.from {
-                    true => format!("not even a step of {size:.1e} beyond load {at} succeeds"),
+                    true => format!(
+                        "not even a step of {} beyond load {at} succeeds",
+                        sig2(*size)
+                    ),
                     false => format!("smaller steps reach load {}", sig6(*load)),
                 };
                 format!("{far}; there: {why}")

@@ -12,7 +12,7 @@ use stickslip_core::plane::{cross, dot};
 use stickslip_core::step::major_history::{MajorCycle, Stop};
 use stickslip_core::step::state::State;
 use stickslip_core::words::counted;
-use stickslip_scene::number::sig4;
+use stickslip_scene::number::{sig2, sig4};
 use stickslip_scene::shown::first_of;
 
 /// Maximum number of cycle members described.
@@ -204,7 +204,7 @@ fn moved(model: &Model, around: &[Major], node: usize) -> f64 {
 fn residuals(attempt: &Attempt) -> Option<Fact> {
     let errors = attempt.errors();
     let from = errors.len().saturating_sub(MOST_RESIDUALS);
-    let shown: Vec<String> = errors[from..].iter().map(|e| format!("{e:.1e}")).collect();
+    let shown: Vec<String> = errors[from..].iter().map(|&e| sig2(e)).collect();
     (!shown.is_empty()).then(|| {
         let text = format!(
             "residual after major {} to {}: {}",
@@ -227,9 +227,10 @@ pub fn limit_words(model: &Model, settings: &Settings, attempt: &Attempt) -> Vec
         .map_or(0.0, |m| m.after.limit.max(settings.tolerance));
     match (rate(&errors), errors.last()) {
         (Some(rate), Some(&last)) => lines.push(Fact::why(format!(
-            "the residual falls by a factor of {} per major iteration; about {:.0} more would reach {limit:.1e}",
+            "the residual falls by a factor of {} per major iteration; about {:.0} more would reach {}",
             sig4(rate),
-            ((limit / last).ln() / rate.ln()).ceil().max(1.0)
+            ((limit / last).ln() / rate.ln()).ceil().max(1.0),
+            sig2(limit)
         ))),
         _ => lines.extend(not_falling(model, attempt)),
     }
@@ -253,8 +254,10 @@ pub fn not_falling(model: &Model, attempt: &Attempt) -> Vec<Fact> {
         let least = last.iter().copied().fold(f64::INFINITY, f64::min);
         let largest = last.iter().copied().fold(0.0, f64::max);
         facts.push(Fact::why(format!(
-            "the residuals of the last {} major iterations lie between {least:.1e} and {largest:.1e} and do not fall one after another",
-            last.len()
+            "the residuals of the last {} major iterations lie between {} and {} and do not fall one after another",
+            last.len(),
+            sig2(least),
+            sig2(largest)
         )));
     }
     if let Some(text) = attempt
@@ -284,8 +287,10 @@ fn largest(model: &Model, major: &Major) -> Option<String> {
         .find(|body| body.nodes.contains(&node))?;
     let [x, y] = model.place(&major.u, node).map(sig4);
     Some(format!(
-        "the largest residual is {force:.3e} at node {} of {} at ({x}, {y})",
-        model.nodes[node].name, body.name
+        "the largest residual is {} at node {} of {} at ({x}, {y})",
+        sig4(force),
+        model.nodes[node].name,
+        body.name
     ))
 }
 

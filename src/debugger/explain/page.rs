@@ -34,7 +34,7 @@ use stickslip_core::step::stepper::Stepper;
 use stickslip_core::words::counted;
 use stickslip_scene::format::spec::Spec;
 use stickslip_scene::gaps::turned;
-use stickslip_scene::number::sig4;
+use stickslip_scene::number::{sig2, sig4};
 
 /// Shown if the first increment fails and nodes start inside their surface.
 const OVERLAP: &str = "nodes start inside their surface; settings.initial_gaps=ramp moves them out over the first leg of the path, adjust moves them onto the surface";
@@ -381,8 +381,10 @@ impl PageBuilder {
                 let place = judged::place(model, &model.places(&state.u), found);
                 self.facts.push(Fact::why(place));
                 self.facts.push(Fact::why(format!(
-                    "the iterations have converged, but the state violates a law: {} is {:.1e}, limit {:.1e}",
-                    found.law.name(), found.amount, found.allowed
+                    "the iterations have converged, but the state violates a law: {} is {}, limit {}",
+                    found.law.name(),
+                    sig2(found.amount),
+                    sig2(found.allowed)
                 )));
             }
             Failure::CutTooOften { slave, last, .. } => {

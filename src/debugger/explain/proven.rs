@@ -128,22 +128,22 @@ pub fn spiral_words(problem: &InterfaceProblem, spiral: &TMaxIteration) -> Strin
         ),
         None => "it never repeats".to_owned(),
     };
-    let away = spiral.distance;
+    let (away, radius_text) = (sig4(spiral.distance), sig4(*radius));
     match spiral.fate {
         TMaxLimit::Cycles if *radius <= AT_ONCE => {
             format!("the modes repeat endlessly, with the same T_max {round}")
         }
         TMaxLimit::Cycles => format!(
-            "T_max spirals into the cycle by a factor of {radius:.4} {round} ({away:.3e} away \
+            "T_max spirals into the cycle by a factor of {radius_text} {round} ({away} away \
              after {}); {more}, but the modes repeat endlessly",
             counted(spiral.start, "iteration")
         ),
         TMaxLimit::Settles => format!(
-            "the modes have settled; T_max converges by a factor of {radius:.4} {round} ({away:.3e} away after {}); {more}",
+            "the modes have settled; T_max converges by a factor of {radius_text} {round} ({away} away after {}); {more}",
             counted(spiral.start, "iteration")
         ),
         TMaxLimit::Diverges => format!(
-            "T_max diverges by a factor of {radius:.4} {round}: it cannot settle with these modes"
+            "T_max diverges by a factor of {radius_text} {round}: it cannot settle with these modes"
         ),
         TMaxLimit::Passes => "the modes repeat for a while, but will change".to_owned(),
     }
@@ -172,7 +172,7 @@ fn fixed_words<'a>(found: &TMaxIteration, name: &impl Fn(usize) -> &'a str) -> O
     let all = found.places.iter().zip(&found.fixed);
     let text = all
         .take(MOST_NAMED)
-        .map(|(&place, t_max)| format!("{t_max:.4e} at {}", name(place)));
+        .map(|(&place, &t_max)| format!("{} at {}", sig4(t_max), name(place)));
     let text = text.collect::<Vec<_>>().join(", ");
     let more = match found.places.len().saturating_sub(MOST_NAMED) {
         0 => String::new(),

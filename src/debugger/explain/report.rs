@@ -18,7 +18,7 @@ use stickslip_core::step::event::{
 use stickslip_core::step::intervene::Intervention;
 use stickslip_core::step::state::State;
 use stickslip_core::words::counted;
-use stickslip_scene::number::{shortest, sig4, sig6};
+use stickslip_scene::number::{shortest, sig2, sig4, sig6};
 use stickslip_scene::shown::first_of;
 
 /// Why Table 2 decided as it did; `friction` is whether there is any.
@@ -233,8 +233,8 @@ fn outcome_with(model: &Model, event: &Event, failed: fn(&Model, &Failure) -> St
             // An attached solver may report neither.
             let residual = after.relative.max(after.interface);
             let numbers = [
-                (!residual.is_nan()).then(|| format!("residual {residual:.3e}")),
-                (!after.limit.is_nan()).then(|| format!("limit {:.1e}", after.limit)),
+                (!residual.is_nan()).then(|| format!("residual {}", sig4(residual))),
+                (!after.limit.is_nan()).then(|| format!("limit {}", sig2(after.limit))),
             ];
             let numbers: Vec<String> = numbers.into_iter().flatten().collect();
             match numbers.is_empty() {
@@ -301,12 +301,14 @@ fn moves(model: &Model, moves: &MotionEvent, failed: fn(&Model, &Failure) -> Str
             shortest(*load)
         ),
         MotionEvent::Step { motion, number } => {
-            format!("step {number} of a damped motion, by {motion:.3e}")
+            format!("step {number} of a damped motion, by {}", sig4(*motion))
         }
         MotionEvent::Slower(slow) => {
             let why = match slow {
                 SmallerStepReason::Failed(why) => failed(model, why),
-                SmallerStepReason::Far { motion } => format!("the step would move by {motion:.3e}"),
+                SmallerStepReason::Far { motion } => {
+                    format!("the step would move by {}", sig4(*motion))
+                }
                 SmallerStepReason::Unstable => "the step would end in an unstable state".to_owned(),
             };
             format!("{why}; the damped motion continues with a smaller step")
@@ -334,7 +336,7 @@ fn pivot(model: &Model, event: &Event) -> String {
         Some(format!("at {} {what}", slave(model, s)))
     });
     let cover = (0..event.nodes.len()).find_map(|s| Some(tests(s)[0]?.value));
-    let left = cover.map_or(String::new(), |z| format!("relaxed by z = {z:.3e}"));
+    let left = cover.map_or(String::new(), |z| format!("relaxed by z = {}", sig4(z)));
     match what {
         Some(what) => format!("pivot: {what}; {left}"),
         None => format!("pivot; {left}"),

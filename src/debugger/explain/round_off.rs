@@ -80,6 +80,6 @@ mod tests {
         assert_eq!(round_off.length(f64::INFINITY), f64::INFINITY);
         assert!(round_off.length(f64::NAN).is_nan());
         assert_eq!(round_off.ratio(1e-13, 1e-14), "–");
-        assert_eq!(round_off.ratio(0.5, 1.0), "0.5000");
+        assert_eq!(round_off.ratio(0.5, 1.0), "0.5");
     }
 }

@@ -27,7 +27,7 @@ pub fn element(model: &Model, point: &PointDeformation) -> String {
 }
 
 /// Names an element and the location of its worst point.
-fn place(model: &Model, point: &PointDeformation) -> String {
+pub(super) fn place(model: &Model, point: &PointDeformation) -> String {
     let [x, y] = point.at.map(sig4);
     format!("{} at ({x}, {y})", element(model, point))
 }

@@ -94,8 +94,9 @@ impl Cone {
     #[must_use]
     pub fn to_scale(self, (width, height): (f64, f64), friction: &Friction) -> Cone {
         let scale = (0.5 * width / self.f_t).min(height / (self.f_n - self.least));
-        let f_n = self.least + height / scale;
-        let f_t = 0.5 * width / scale;
+        // Not less by round-off.
+        let f_n = (self.least + height / scale).max(self.f_n);
+        let f_t = (0.5 * width / scale).max(self.f_t);
         let mu = friction.coefficient();
         let bound = mu * f_n + friction.cohesion;
         // The edge ends at the frame.

@@ -13,7 +13,7 @@ use crate::history::strip::Strip;
 use crate::history::tree::Tree;
 use stickslip_core::model::{Mode, Model};
 use stickslip_core::step::event::Position;
-use stickslip_scene::number::shortest;
+use stickslip_scene::number::{shortest, sig2};
 use stickslip_scene::shown::first_of;
 
 /// Relative difference below which two states are the same.
@@ -208,10 +208,10 @@ pub fn describe(tree: &Tree, comparison: &Comparison) -> String {
             ..
         } = side.cost;
         format!(
-            "{} at load {}, residual {:.1e}, {minors} minor, {majors} major, {seconds:.3} s",
+            "{} at load {}, residual {}, {minors} minor, {majors} major, {seconds:.3} s",
             branches::name(tree, side.branch),
             shortest(side.load_factor),
-            side.residual
+            sig2(side.residual)
         )
     };
     let [a, b] = &comparison.tips;

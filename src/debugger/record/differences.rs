@@ -17,6 +17,7 @@ use stickslip_core::step::event::Failure;
 use stickslip_core::step::state::Status;
 use stickslip_scene::Scene;
 use stickslip_scene::format::paths;
+use stickslip_scene::number::{sig2, sig4};
 use stickslip_scene::shown;
 
 /// Largest relative difference of equal numbers.
@@ -383,7 +384,7 @@ impl fmt::Display for Differences {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let apart = |row: &Difference| {
             row.apart.map_or(String::new(), |(apart, allowed)| {
-                format!("{apart:.3e} > {allowed:.1e}")
+                format!("{} > {}", sig4(apart), sig2(allowed))
             })
         };
         let mut lines = vec![["", "left", "right", "apart > allowed"].map(str::to_owned)];

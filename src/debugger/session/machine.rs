@@ -35,6 +35,7 @@ use stickslip_core::step::stepper::Stepper;
 use stickslip_platform::clock::Instant;
 use stickslip_scene::Scene;
 use stickslip_scene::gaps;
+use stickslip_scene::number::shortest;
 use stickslip_scene::solver::solver;
 
 /// Maximum duration of one call of `poll`, so that the caller stays responsive.
@@ -219,7 +220,7 @@ impl Session {
         let branch = several.then(|| format!("in {}", self.timeline.name()));
         let watches = self.watches.values(self.frame());
         let watches = watches.into_iter().map(|(name, value)| match value {
-            Some(value) => format!("{name} = {value:.6e}"),
+            Some(value) => format!("{name} = {}", shortest(value)),
             None => format!("{name} = none"),
         });
         let finished = self.model().finished.as_ref();

@@ -6,6 +6,7 @@ use super::super::nodes::Names;
 use crate::format::contact_law::{ContactLaw, FrictionSpec};
 use crate::format::error::{Fault, Path, at, bail, fault};
 use crate::format::spec::{SlaveSpec, Spec};
+use crate::number::sig4;
 use std::collections::HashSet;
 use stickslip_core::contact::facing::is_piece;
 use stickslip_core::contact::projection::{project, projection_at};
@@ -111,8 +112,8 @@ pub(super) fn tie(
         let over = projection_at(surfaces, spot, &places, at);
         if over.gap.abs() > JOINED * length {
             let why = format!(
-                "is {:.4e} away from its surface, more than 5 % of the scene's size; move it closer, or remove it from the list",
-                over.gap.abs()
+                "is {} away from its surface, more than 5 % of the scene's size; move it closer, or remove it from the list",
+                sig4(over.gap.abs())
             );
             return Err(refused(why));
         }

@@ -9,6 +9,7 @@ use crate::format::error::bail;
 use crate::format::given::SideSet;
 use crate::format::spec::{Nodes, SlaveSpec, SurfaceSpec};
 use crate::geometry::distance_to_segment;
+use crate::number::sig4;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use stickslip_core::model::{InitialGaps, Mode, SlavePoints};
 use stickslip_exchange::inp::DeckLocation;
@@ -472,14 +473,16 @@ impl DeckObjects<'_> {
         if near.is_empty() {
             bail!(
                 tie.place,
-                "no node of the first surface is within {tolerance:.3e} of the second; see POSITION TOLERANCE"
+                "no node of the first surface is within {} of the second; see POSITION TOLERANCE",
+                sig4(tolerance)
             );
         }
         if near.len() < slaves.len() {
             let text = format!(
-                "{} of {} nodes are further than {tolerance:.3e} away and are not tied",
+                "{} of {} nodes are further than {} away and are not tied",
                 slaves.len() - near.len(),
-                slaves.len()
+                slaves.len(),
+                sig4(tolerance)
             );
             self.add_note(tie.place, &text);
         }

@@ -4,6 +4,7 @@ use super::super::geometry::distance;
 use super::{EntryKind, NameEntry, Names};
 use crate::format::error::{Fault, Path, at, bail, fault};
 use crate::format::spec::Nodes;
+use crate::number::sig4;
 use std::collections::HashSet;
 use stickslip_core::words::counted;
 
@@ -130,12 +131,12 @@ impl Names {
         let ([x, y], [v, w]) = (place(n), place(m));
         Err(fault!(
             here,
-            "the edges do not coincide: {} is at ({x:?}, {y:?}) and {} at ({v:?}, {w:?}), {:.3e} apart; \
-             at most {:.3e} is allowed (tolerance {tolerance:?} of the length {length:.4})",
+            "the edges do not coincide: {} is at ({x:?}, {y:?}) and {} at ({v:?}, {w:?}), {} apart; \
+             at most {} is allowed (tolerance {tolerance:?} of the length {length:.4})",
             self.nodes[n].name,
             self.nodes[m].name,
-            distance(place(n), place(m)),
-            tolerance * length
+            sig4(distance(place(n), place(m))),
+            sig4(tolerance * length)
         ))
     }
 

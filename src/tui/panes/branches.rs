@@ -200,10 +200,7 @@ fn comparison(
     lines.push(row(
         "residual",
         theme.faint,
-        of(&|side| match side.residual {
-            0.0 => "0".into(),
-            residual => format!("{residual:.1e}"),
-        }),
+        of(&|side| number::sig2(side.residual)),
     ));
     let heads = format!("{:<MODE$} {:<rest$} F_t", "mode", "F_n", rest = number - 1);
     lines.push(row("node", theme.faint, [heads.clone(), heads]));

@@ -19,7 +19,7 @@ use stickslip_core::contact::record::ContactRecord;
 use stickslip_debugger::explain::influence::NodePush;
 use stickslip_debugger::explain::tested;
 use stickslip_debugger::explain::trail::{self, Cone, TrailPoint};
-use stickslip_scene::number::{UNREPORTED, short, sig4};
+use stickslip_scene::number::{UNREPORTED, sig2, sig4};
 use unicode_width::UnicodeWidthStr;
 
 /// Minimum width and height of a picture.
@@ -162,7 +162,7 @@ fn words(
         Some(frame) => frame.map(triple),
         None => [record.normal, tangent(record.normal)].map(pair),
     };
-    let number = |value: f64| known(value, short(value));
+    let number = |value: f64| known(value, sig4(value));
     let [f_n, f_t, t_max] = [record.f_n, record.f_t, record.t_max].map(|f| round_off.force(f));
     let gap = round_off.length(record.gap);
     let row = |text: String| paint::wrapped(&text, width, theme.text);
@@ -237,7 +237,7 @@ fn draw_cone(
         .collect();
     draw_trail(buffer, &mut canvas, trail, &dots, theme);
     frame.axis(buffer, theme.faint);
-    frame.tick(buffer, 0, &tick(cone.f_n), theme.faint);
+    frame.tick(buffer, 0, &sig2(cone.f_n), theme.faint);
     let zero = canvas
         .cell(dot([0.0, 0.0]))
         .map_or(0, |(_, y)| y - frame.field.y);
@@ -298,17 +298,9 @@ fn circle(
     draw_trail(buffer, &mut canvas, trail, &dots, theme);
 }
 
-/// A number at an axis.
-fn tick(value: f64) -> String {
-    match value {
-        0.0 => "0".into(),
-        _ => format!("{value:.1e}"),
-    }
-}
-
 /// The ends of a horizontal axis, with its name between them.
 fn below(buffer: &mut Buffer, frame: ChartFrame, [low, high]: [f64; 2], name: &str, app: &App) {
-    let (low, high) = (tick(low), tick(high));
+    let (low, high) = (sig2(low), sig2(high));
     let width = usize::from(frame.field.width);
     let room = width.saturating_sub(low.len() + high.len());
     // A narrow axis has only its ends.
@@ -336,7 +328,7 @@ fn cobweb(buffer: &mut Buffer, area: Rect, trail: &[TrailPoint], app: &App, view
     // An empty path has no width.
     if path.is_empty() || high - low <= least {
         let text = match trail.last() {
-            Some(point) if high >= low => format!(" T_max has settled at {}", short(point.t_max)),
+            Some(point) if high >= low => format!(" T_max has settled at {}", sig4(point.t_max)),
             _ => " used only while the node slides".into(),
         };
         let lines = paint::wrapped(&text, area.width.into(), theme.faint);
@@ -366,9 +358,9 @@ fn cobweb(buffer: &mut Buffer, area: Rect, trail: &[TrailPoint], app: &App, view
         cell.set_symbol("●").set_style(theme.strong);
     }
     frame.axis(buffer, theme.faint);
-    frame.tick(buffer, 0, &tick(high), theme.faint);
+    frame.tick(buffer, 0, &sig2(high), theme.faint);
     let bottom = frame.field.height - 1;
-    frame.tick(buffer, bottom, &tick(low), theme.faint);
+    frame.tick(buffer, bottom, &sig2(low), theme.faint);
     let name = match origin == 0.0 {
         true => "used".to_owned(),
         false => format!("less {}", sig4(origin)),
@@ -427,7 +419,7 @@ fn pushes(
         };
         let text = format!(
             " {from:>name$} {stroke}{:─^number$}{stroke}{end}",
-            format!("{sign}{}", short(of(push)))
+            format!("{sign}{}", sig4(of(push)))
         );
         let style = if part >= 0.5 {
             theme.strong

@@ -12,7 +12,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
 use stickslip_debugger::history::frame;
-use stickslip_scene::number::{shortest, sig6};
+use stickslip_scene::number::{shortest, sig2, sig6};
 
 /// Width of the axis with its labels.
 const LABELS: u16 = 9;
@@ -121,7 +121,7 @@ fn axes(buffer: &mut Buffer, frame: ChartFrame, x: [f64; 2], y: [f64; 2], theme:
         let whole = sig6(value);
         match whole.len() < usize::from(LABELS) {
             true => whole,
-            false => format!("{value:.1e}"),
+            false => sig2(value),
         }
     };
     frame.axis(buffer, theme.faint);

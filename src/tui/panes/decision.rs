@@ -21,7 +21,7 @@ use stickslip_debugger::explain::report;
 use stickslip_debugger::explain::reported_pushes;
 use stickslip_debugger::explain::round_off::NOTE;
 use stickslip_debugger::explain::tested::{self, Dimension};
-use stickslip_scene::number::{self, long, sig4};
+use stickslip_scene::number::{self, shortest, sig4};
 use unicode_width::UnicodeWidthStr;
 
 /// Width of the row headings.
@@ -85,23 +85,28 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let height = inner.height as usize;
     let row_fits = wide && height >= ROW + tests.len() + words.len();
     let needed = GRID + tests.len() + words.len();
-    let spare = (inner.height as usize).saturating_sub(needed);
+    let (short, spare) = (height < needed, height.saturating_sub(needed));
+    let row = |decision, mode| {
+        grid(
+            decision,
+            Some(mode),
+            hidden,
+            inner.width.into(),
+            false,
+            theme,
+        )
+    };
     let air = |enough: bool| enough.then(Line::default);
     let crowded = !wide || inner.height < 9;
     let mut all = match decision {
         Some(decision) if decision.rule == Rule::Tied => Vec::new(),
         // Where there is no room for the table, its row that applies is shown.
-        Some(decision) if crowded && row_fits && !hidden && table(&decision).is_some() => {
-            let rows = Some(decision.before);
-            grid(
-                Some(&decision),
-                rows,
-                false,
-                inner.width as usize,
-                false,
-                theme,
-            )
+        Some(decision)
+            if (short || crowded && !hidden) && row_fits && table(&decision).is_some() =>
+        {
+            row(Some(&decision), decision.before)
         }
+        None if short && row_fits && count > 0 => row(None, view.mode(slave)),
         Some(decision) if (crowded || table(&decision).is_none()) && !hidden => {
             vec![fired(&decision, view.differs(slave), theme)]
         }
@@ -195,8 +200,8 @@ fn pushes(
 /// A number with its sign and four digits.
 fn signed(value: f64) -> String {
     match value {
-        value if value < 0.0 => number::short(value),
-        value => format!("+{}", number::short(value)),
+        value if value < 0.0 => number::sig4(value),
+        value => format!("+{}", number::sig4(value)),
     }
 }
 
@@ -641,7 +646,7 @@ fn words(record: Option<&ContactRecord>, slave: usize, view: &View) -> String {
     if view.t_max_moves(slave) {
         text += &format!(
             " T_max has not settled: {} was used.",
-            long(record.t_max_used)
+            shortest(view.round_off().force(record.t_max_used))
         );
     }
     if record.carried.contains(&true) {

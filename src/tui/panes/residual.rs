@@ -99,7 +99,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
 fn short(value: f64, view: &View) -> String {
     match view.is_unreported(value) {
         true => number::UNREPORTED.into(),
-        false => number::short(value),
+        false => number::sig4(value),
     }
 }
 
@@ -131,7 +131,7 @@ fn judged(view: &View, theme: &Theme) -> Option<Line<'static>> {
         Span::raw(format!(
             " {} {}",
             worst.law.name(),
-            number::short(worst.amount)
+            number::sig4(worst.amount)
         )),
         Span::styled(
             format!("{place}, allowed {:.0e}", worst.allowed),

@@ -549,7 +549,7 @@ fn slaves(buffer: &mut Buffer, canvas: &Canvas, window: &Window, app: &App, view
         let right = (x + 1, y);
         let crowded = |&(a, b): &&(u16, u16)| a.abs_diff(x) < APART && b.abs_diff(y) < 2;
         if app.camera.zoom > 1.0 && seen.iter().filter(crowded).count() == 1 {
-            name(buffer, canvas, (x + 2, y), view.slave(slave), theme);
+            name(buffer, canvas, (x, y), view.slave(slave), theme);
         }
         if found(view).is_some_and(|found| found.nodes.contains(&slave))
             && canvas.area().contains(right.into())
@@ -559,17 +559,23 @@ fn slaves(buffer: &mut Buffer, canvas: &Canvas, window: &Window, app: &App, view
     }
 }
 
-/// Writes a name where no letter is in its way.
+/// Writes the name of the node in this cell next to it, where it covers only faint lines; not at all if there is no room.
 fn name(buffer: &mut Buffer, canvas: &Canvas, (x, y): (u16, u16), name: &str, theme: &Theme) {
     let area = canvas.area();
     let name = paint::cut(name, 12);
-    let fits = x + name.width() as u16 <= area.right();
-    let rows = [y.saturating_sub(1), y + 1, y];
-    let row = rows
+    let width = name.width() as u16;
+    let is_free = |buffer: &Buffer, at: (u16, u16)| {
+        buffer.cell(at).is_some_and(|cell| {
+            let is_line = cell.symbol() >= "\u{2800}" && cell.modifier == theme.faint.add_modifier;
+            area.contains(at.into()) && (cell.symbol() == " " || is_line)
+        })
+    };
+    let places = [x + 2, x.saturating_sub(width + 1)]
         .into_iter()
-        .find(|row| (area.top()..area.bottom()).contains(row));
-    if let (true, Some(row)) = (fits, row) {
-        paint::label(buffer, (x, row), &name, theme.faint, theme);
+        .flat_map(|x| [y.saturating_sub(1), y + 1, y].map(|y| (x, y)));
+    let free = { places }.find(|&(x, y)| (x..x + width).all(|x| is_free(buffer, (x, y))));
+    if let Some(at) = free {
+        paint::label(buffer, at, &name, theme.faint, theme);
     }
 }
 

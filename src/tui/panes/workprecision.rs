@@ -197,8 +197,10 @@ fn details(page: &ChartPage, theme: &Theme, width: usize) -> paint::Lines {
         point.name
     );
     let error = match (point.error, &point.failed) {
-        (Some(error), _) if point.is_round_off() => format!("error {error:.3e} (round-off)"),
-        (Some(error), _) => format!("error {error:.3e}"),
+        (Some(error), _) if point.is_round_off() => {
+            format!("error {} (round-off)", number::sig4(error))
+        }
+        (Some(error), _) => format!("error {}", number::sig4(error)),
         (None, Some(why)) => format!("✗ {why}"),
         (None, None) => "reference".to_owned(),
     };
@@ -260,7 +262,7 @@ mod tests {
         };
         assert!(of('A').is_some(), "{shown}");
         assert!(
-            shown.contains("▸ A mesh, refine=1") && shown.contains("error 1.000e-2"),
+            shown.contains("▸ A mesh, refine=1") && shown.contains("error 0.01"),
             "{shown}"
         );
         assert!(page.key("Left"));

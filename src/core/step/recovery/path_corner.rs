@@ -375,10 +375,10 @@ fn agreeing(change: &Change, rates: Rates, friction: &Friction, corner: Option<f
     let bound = (friction.angle.to_radians() - turned).tan() * rates.f_n;
     let beyond = change.sign * rates.f_t - bound;
     let margin = match (change.to, change.from) {
+        (Mode::Sliding | Mode::Fixed, Mode::Free) => rates.f_n,
         (Mode::Sliding, _) => change.sign * rates.slip,
         (Mode::Fixed, Mode::Fixed) => 0.0,
         (Mode::Free, _) => rates.gap,
-        (Mode::Fixed, Mode::Free) => rates.f_n,
         (Mode::Fixed, _) if change.held => beyond,
         (Mode::Fixed, _) => -beyond,
     };
@@ -497,6 +497,8 @@ mod tests {
         assert_eq!(agreeing(fixed, sliding, -1.0, all), 1.0);
         assert_eq!(agreeing(fixed, free, 0.0, all), 1.0);
         assert_eq!(agreeing(free, fixed, 0.0, all), -1.0);
+        // Without friction a touching contact slides either way.
+        assert_eq!(agreeing(free, sliding, 1.0, all), -1.0);
         // |F_t| must fall below the bound: 2 s < −s backwards only.
         assert_eq!(agreeing(sliding, fixed, 1.0, all), -1.0);
         assert_eq!(agreeing(sliding, fixed, -1.0, all), 1.0);

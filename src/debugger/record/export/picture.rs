@@ -19,7 +19,7 @@ use stickslip_core::step::event::Outcome;
 use stickslip_core::step::state::Status;
 use stickslip_core::step::stepper::Stepper;
 use stickslip_core::words::counted;
-use stickslip_scene::number::{short, shortest, sig4};
+use stickslip_scene::number::{shortest, sig4};
 use stickslip_study::drawn::PlotError;
 use stickslip_study::origin;
 use stickslip_study::placing::{OccupiedArea, Patch};
@@ -533,7 +533,7 @@ impl ShapeDrawing<'_> {
         };
         let words = format!(
             "Displacements {scale}, maximum {}; dashed: undeformed; green: supports, loads, and prescribed motions (double line).",
-            plain_four(moved)
+            sig4(moved)
         );
         self.sheet.height = y + 1.2 * LABEL;
         self.sheet.paragraph(&[words], SMALL, GREY)
@@ -606,14 +606,6 @@ fn mode(shown: &ExportState, slave: usize) -> Mode {
     found.map_or(shown.state.nodes[slave].mode, |found| found.decision.before)
 }
 
-/// Four significant digits, without trailing zeros.
-fn plain_four(value: f64) -> String {
-    match format!("{value:.3e}").parse::<f64>() {
-        Ok(rounded) => shortest(rounded),
-        Err(_) => short(value),
-    }
-}
-
 /// The largest displacement of a node.
 fn moved(shown: &ExportState) -> f64 {
     let model = &shown.scene.model;
@@ -676,10 +668,10 @@ fn table(sheet: &mut Sheet, shown: &ExportState, rows: &[usize]) -> Result<(), P
         );
         let round_off = RoundOff::new(model, &event.before);
         let forces = [found.f_n, found.f_t, found.t_max];
-        let mut values = vec![short(round_off.length(found.gap))];
-        values.extend(forces.map(|force| short(round_off.force(force))));
+        let mut values = vec![sig4(round_off.length(found.gap))];
+        values.extend(forces.map(|force| sig4(round_off.force(force))));
         let by_area = model.contacts[slave].pressure(round_off.force(found.f_n), 0.0);
-        values.extend(by_area.map(|[pressure, _]| short(pressure)));
+        values.extend(by_area.map(|[pressure, _]| sig4(pressure)));
         for ((_, x), value) in COLUMNS.iter().zip(values) {
             sheet.text((wide(*x), y), &value, SMALL, BLACK, Anchor::Right);
         }
