@@ -20,13 +20,15 @@ pub fn tests() -> Vec<Trial> {
         a_branch_of_a_forked_state_leaves_the_other_one_as_it_was,
         the_copies_of_a_process_end_with_each_other_and_with_the_program,
         values_that_repeat_and_long_periods_are_found,
+        a_solver_in_c_in_space_has_its_swing_found,
     ]
 }
 
-const SOURCES: [(&str, &str); 4] = [
+const SOURCES: [(&str, &str); 5] = [
     ("loops.c", include_str!("loops.c")),
     ("loops.f90", include_str!("loops.f90")),
     ("loops.py", include_str!("loops.py")),
+    ("loops_3d.c", include_str!("loops_3d.c")),
     ("repeats.py", include_str!("repeats.py")),
 ];
 const HEADER: [&str; 11] = [
@@ -276,5 +278,32 @@ fn values_that_repeat_and_long_periods_are_found() {
         let said = does(&mut session, run);
         let cycle = format!("cycle of period {period}: ");
         assert!(said.contains(&cycle) && said.contains(told), "{said}");
+    }
+}
+
+fn a_solver_in_c_in_space_has_its_swing_found() {
+    let folder = tempfile::tempdir().unwrap();
+    let header = [&HEADER[..], &["-o", "stickslip_c.o"]].concat();
+    let link = ["cc", "loops_3d.c", "stickslip_c.o", "-lm", "-o", "loops_3d"];
+    built(folder.path(), &[&header, &link]);
+    let command = folder.path().join("loops_3d").display().to_string();
+    let report = check(&start(&[&command]), &Log::default());
+    assert_eq!(report.failed(), 0, "{}", report.text());
+    let mut session = session(start(&[&command]), &Log::default());
+    let run = Command::Forward {
+        unit: Unit::Run,
+        count: 1,
+    };
+    let said = does(&mut session, run);
+    assert!(said.contains("cycle of period 2: "), "{said}");
+    let frames = session.frames().iter().skip(1);
+    for (k, frame) in frames.enumerate() {
+        let node = &frame.event.as_ref().unwrap().nodes[0];
+        assert_eq!(node.deviation().map(f64::to_degrees), Some(0.0));
+        // t is y and n x t is -x; the node moves along x, then along y.
+        let (degrees, moved) = [(90.0, [3.0, 0.0]), (180.0, [0.0, 3.0])][k % 2];
+        let [force, slip] = node.directions.unwrap().map(f64::to_degrees);
+        assert!((force - degrees).abs() + (slip - degrees).abs() < 1e-9);
+        assert_eq!(frame.state.u[..2], moved, "{k}");
     }
 }

@@ -52,6 +52,14 @@ int ss_mode(int contact, int chosen);
 void ss_contact_result(int contact, int mode, int next, double gap, double f_n, double f_t, double limit, double slip);
 void ss_displacement(int node, double x, double y);
 
+/* The same in space, for all nodes, surfaces and contacts. The faces of a surface have equally many corners, listed face by face. Friction
+   and slip have components along t and n x t; `limit` is the radius of the friction cone. Without ss_frame n is z and t is x. */
+int ss_node_3d(double x, double y, double z);
+void ss_surface_3d(const char *name, const int *corners, int faces, int corners_per_face, int rigid);
+void ss_frame(int contact, const double *normal, const double *tangent);
+void ss_contact_result_3d(int contact, int mode, int next, double gap, double f_n, const double *f_t, double limit, const double *slip);
+void ss_displacement_3d(int node, double x, double y, double z);
+
 /* Reports the iteration, and returns when the debugger asks for the next one. `ended` is the level that ended with it: "iteration",
    "equilibrium" (a major iteration), "increment", "cut", "failure" or "done"; `residual` is relative. */
 void ss_pause(const char *ended, double load, double residual, double tolerance);
@@ -86,16 +94,16 @@ static const char *const ss_modes[] = {"free", "sliding", "fixed"};
 
 struct ss_text { char *letters; size_t length, room; };
 
-struct ss_found { int mode, next; double gap, f_n, f_t, limit, slip; };
+struct ss_found { int mode, next; double gap, f_n, f_t[2], limit, slip[2], frame[6]; int has_frame; };
 
 static struct {
-    int in, out, nodes, contacts;
+    int in, out, nodes, contacts, in_space;
     int over;                     /* 1: done, 2: after ss_end */
     struct ss_text node_list, line_list, surface_list, contact_list, scene, hello, state;
     struct ss_found *found;
     int *held, *once;             /* -1: the solver's own choice */
     char *is_once;                /* whether the mode of this solve was forced once */
-    double (*moved)[2];
+    double (*moved)[3];
     int increment, attempt, major, minor;
     int *saved;                   /* number of saved states, shared by all copies */
     int wake[SS_STATES][2];       /* a pipe for each saved state, opened before the first so that all copies know all of them */
@@ -123,6 +131,21 @@ static void ss_number(struct ss_text *text, const char *key, double value) {
     else ss_add(text, ",\"%s\":null", key);
 }
 
+/* The first `count` numbers of a list. */
+static void ss_numbers(struct ss_text *text, const double *values, int count) {
+    int k;
+    for (k = 0; k < count; k++) ss_add(text, "%s%.17g", k ? "," : "[", values[k]);
+    ss_add(text, "]");
+}
+
+/* A number in the plane, a pair in space. */
+static void ss_tangential(struct ss_text *text, const char *key, const double *values) {
+    if (!ss.in_space) { ss_number(text, key, values[0]); return; }
+    ss_add(text, ",\"%s\":", key);
+    if (isfinite(values[0]) && isfinite(values[1])) ss_numbers(text, values, 2);
+    else ss_add(text, "null");
+}
+
 /* Text in quotes. */
 static void ss_quoted(struct ss_text *text, const char *words) {
     ss_add(text, "\"");
@@ -141,20 +164,51 @@ static void *ss_grown(void *list, int count, size_t size) {
     return grown;
 }
 
+int ss_node_3d(double x, double y, double z) {
+    const double at[3] = {x, y, z};
+    ss.in_space = 1;
+    ss.moved = (double(*)[3])ss_grown(ss.moved, ss.nodes, sizeof *ss.moved);
+    ss_add(&ss.node_list, "%s{\"at\":", ss.nodes ? "," : "");
+    ss_numbers(&ss.node_list, at, 3);
+    ss_add(&ss.node_list, "}");
+    return ss.nodes++;
+}
+
 int ss_node(double x, double y) {
-    ss.moved = (double(*)[2])ss_grown(ss.moved, ss.nodes, sizeof *ss.moved);
+    ss.moved = (double(*)[3])ss_grown(ss.moved, ss.nodes, sizeof *ss.moved);
     ss_add(&ss.node_list, "%s{\"at\":[%.17g,%.17g]}", ss.nodes ? "," : "", x, y);
     return ss.nodes++;
 }
 
 void ss_line(int from, int to) { ss_add(&ss.line_list, "%s[%d,%d]", ss.line_list.length ? "," : "", from, to); }
 
-void ss_surface(const char *name, const int *nodes, int count, int rigid) {
+static void ss_indices(const int *nodes, int count) {
     int k;
+    ss_add(&ss.surface_list, "[");
+    for (k = 0; k < count; k++) ss_add(&ss.surface_list, "%s%d", k ? "," : "", nodes[k]);
+    ss_add(&ss.surface_list, "]");
+}
+
+static void ss_surface_head(const char *name, int rigid) {
     ss_add(&ss.surface_list, "%s{\"name\":", ss.surface_list.length ? "," : "");
     ss_quoted(&ss.surface_list, name);
-    ss_add(&ss.surface_list, ",\"rigid\":%s,\"nodes\":[", rigid ? "true" : "false");
-    for (k = 0; k < count; k++) ss_add(&ss.surface_list, "%s%d", k ? "," : "", nodes[k]);
+    ss_add(&ss.surface_list, ",\"rigid\":%s,", rigid ? "true" : "false");
+}
+
+void ss_surface(const char *name, const int *nodes, int count, int rigid) {
+    ss_surface_head(name, rigid);
+    ss_add(&ss.surface_list, "\"nodes\":");
+    ss_indices(nodes, count);
+    ss_add(&ss.surface_list, "}");
+}
+
+void ss_surface_3d(const char *name, const int *corners, int faces, int corners_per_face, int rigid) {
+    int k;
+    ss_surface_head(name, rigid);
+    for (k = 0; k < faces; k++) {
+        ss_add(&ss.surface_list, k ? "," : "\"faces\":[");
+        ss_indices(corners + k * corners_per_face, corners_per_face);
+    }
     ss_add(&ss.surface_list, "]}");
 }
 
@@ -315,15 +369,15 @@ void ss_begin(const char *title, const char *name, const char *version) {
     if (ss.saved == MAP_FAILED) ss.saved = NULL;
     for (k = 0; ss.saved && k < SS_STATES; k++) if (pipe(ss.wake[k])) ss.saved = NULL;
 #endif
-    ss_add(&ss.hello, "{\"type\":\"hello\",\"protocol\":1,\"protocols\":[1],\"name\":");
+    ss_add(&ss.hello, "{\"type\":\"hello\",\"protocol\":%d,\"protocols\":[1,2],\"name\":", ss.in_space ? 2 : 1);
     ss_quoted(&ss.hello, name);
     ss_add(&ss.hello, ",\"version\":");
     ss_quoted(&ss.hello, version);
     ss_add(&ss.hello, ",\"abilities\":{\"force\":true,\"hold\":true,\"restore\":\"%s\"}}\n", ss.saved ? "any" : "none");
     ss_add(&ss.scene, "{\"type\":\"scene\",\"title\":");
     ss_quoted(&ss.scene, title);
-    ss_add(&ss.scene, ",\"nodes\":[%s],\"lines\":[%s],\"surfaces\":[%s],\"contacts\":[%s]}\n",
-           ss.node_list.letters ? ss.node_list.letters : "", ss.line_list.letters ? ss.line_list.letters : "",
+    ss_add(&ss.scene, ",\"dimension\":%d,\"nodes\":[%s],\"lines\":[%s],\"surfaces\":[%s],\"contacts\":[%s]}\n",
+           ss.in_space ? 3 : 2, ss.node_list.letters ? ss.node_list.letters : "", ss.line_list.letters ? ss.line_list.letters : "",
            ss.surface_list.letters ? ss.surface_list.letters : "", ss.contact_list.letters ? ss.contact_list.letters : "");
     ss_answer();
 }
@@ -336,13 +390,34 @@ int ss_mode(int contact, int chosen) {
 }
 
 void ss_contact_result(int contact, int mode, int next, double gap, double f_n, double f_t, double limit, double slip) {
-    struct ss_found found = {mode, next, gap, f_n, f_t, limit, slip};
-    ss.found[contact] = found;
+    const double f[2] = {f_t, 0}, s[2] = {slip, 0};
+    ss_contact_result_3d(contact, mode, next, gap, f_n, f, limit, s);
 }
 
-void ss_displacement(int node, double x, double y) {
+void ss_contact_result_3d(int contact, int mode, int next, double gap, double f_n, const double *f_t, double limit, const double *slip) {
+    struct ss_found *found = &ss.found[contact];
+    found->mode = mode;
+    found->next = next;
+    found->gap = gap;
+    found->f_n = f_n;
+    found->limit = limit;
+    memcpy(found->f_t, f_t, sizeof found->f_t);
+    memcpy(found->slip, slip, sizeof found->slip);
+}
+
+void ss_frame(int contact, const double *normal, const double *tangent) {
+    struct ss_found *found = &ss.found[contact];
+    memcpy(found->frame, normal, 3 * sizeof *normal);
+    memcpy(found->frame + 3, tangent, 3 * sizeof *tangent);
+    found->has_frame = 1;
+}
+
+void ss_displacement(int node, double x, double y) { ss_displacement_3d(node, x, y, 0); }
+
+void ss_displacement_3d(int node, double x, double y, double z) {
     ss.moved[node][0] = x;
     ss.moved[node][1] = y;
+    ss.moved[node][2] = z;
 }
 
 void ss_pause(const char *ended, double load, double residual, double tolerance) {
@@ -365,13 +440,22 @@ void ss_pause(const char *ended, double load, double residual, double tolerance)
         else if (ss.is_once[c]) ss_add(state, ",\"forced\":\"once\"");
         ss_number(state, "gap", found->gap);
         ss_number(state, "f_n", found->f_n);
-        ss_number(state, "f_t", found->f_t);
+        ss_tangential(state, "f_t", found->f_t);
         ss_number(state, "limit", found->limit);
-        ss_number(state, "slip", found->slip);
+        ss_tangential(state, "slip", found->slip);
+        if (found->has_frame) {
+            ss_add(state, ",\"normal\":");
+            ss_numbers(state, found->frame, 3);
+            ss_add(state, ",\"tangent\":");
+            ss_numbers(state, found->frame + 3, 3);
+        }
         ss_add(state, "}");
     }
     ss_add(state, "],\"displacements\":[");
-    for (k = 0; k < ss.nodes; k++) ss_add(state, "%s[%.17g,%.17g]", k ? "," : "", ss.moved[k][0], ss.moved[k][1]);
+    for (k = 0; k < ss.nodes; k++) {
+        if (k) ss_add(state, ",");
+        ss_numbers(state, ss.moved[k], ss.in_space ? 3 : 2);
+    }
     ss_add(state, "]}\n");
     ss_send(state->letters, state->length);
     ss.over = !strcmp(ended, "done");
