@@ -521,6 +521,8 @@ impl PageBuilder {
             Some((_, true))
         );
         let place = usize::from(has_left_range).min(self.facts.len());
+        let unexplained = self.facts.iter_mut().filter(|f| f.text == self.found.head);
+        unexplained.for_each(|fact| fact.part = Part::Details);
         self.facts.insert(place, Fact::why(text));
     }
 
