@@ -23,6 +23,10 @@
  */
 #ifndef STICKSLIP_ATTACH_H
 #define STICKSLIP_ATTACH_H
+#if defined SS_IMPLEMENTATION && !defined _DEFAULT_SOURCE
+#define _DEFAULT_SOURCE /* fork and MAP_ANONYMOUS, also with -std=c99 */
+#endif
+#include <math.h>
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -62,22 +66,21 @@ void ss_end(void);
 
 #ifdef SS_IMPLEMENTATION
 #undef SS_IMPLEMENTATION
-#ifndef _DEFAULT_SOURCE
-#define _DEFAULT_SOURCE
-#endif
 #include <fcntl.h>
-#include <math.h>
-#include <signal.h>
+#include <poll.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #ifndef SS_STATES
 #define SS_STATES 200
 #endif
+#define SS_LOOK 100 /* milliseconds between two looks of a saved state at the others */
+#define SS_LEFT 90  /* exit status of a copy that left the run to another one */
 
 static const char *const ss_modes[] = {"free", "sliding", "fixed"};
 
@@ -86,7 +89,8 @@ struct ss_text { char *letters; size_t length, room; };
 struct ss_found { int mode, next; double gap, f_n, f_t, limit, slip; };
 
 static struct {
-    int in, out, nodes, contacts, over;
+    int in, out, nodes, contacts;
+    int over;                     /* 1: done, 2: after ss_end */
     struct ss_text node_list, line_list, surface_list, contact_list, scene, hello, state;
     struct ss_found *found;
     int *held, *once;             /* -1: the solver's own choice */
@@ -191,15 +195,44 @@ static int ss_read(char *line, int room) {
 static void ss_quit(void) {
     int k;
     for (k = 0; ss.saved && k < *ss.saved; k++) if (write(ss.wake[k][1], "q", 1) < 0) break;
-    _exit(0);
+    _exit(ss.saved && *ss.saved ? SS_LEFT : 0);
 }
+
+#ifndef SS_NO_FORK
+/* Waits as a saved state, and returns in the copy that continues from it. Ends with the debugger, and reports copies that died. */
+static void ss_wait(int token) {
+    struct pollfd ends[2];
+    char word = 0, answer[128];
+    int status;
+    for (;;) {
+        memset(ends, 0, sizeof ends);
+        ends[0].fd = ss.wake[token][0];
+        ends[0].events = POLLIN;
+        ends[1].fd = ss.in; /* POLLHUP needs no request. */
+        poll(ends, 2, SS_LOOK);
+        while (waitpid(-1, &status, WNOHANG) > 0) {
+            if (WIFEXITED(status) && WEXITSTATUS(status) == SS_LEFT) continue;
+            snprintf(answer, sizeof answer, "{\"type\":\"bye\",\"reason\":\"its process ended: %s %d\"}\n",
+                     WIFSIGNALED(status) ? "signal" : "exit status", WIFSIGNALED(status) ? WTERMSIG(status) : WEXITSTATUS(status));
+            ss_say(answer);
+            ss_quit();
+        }
+        if (ends[0].revents & POLLIN && read(ends[0].fd, &word, 1) == 1 && word == 'r') {
+            pid_t copy = fork();
+            if (copy == 0) { ss_say("{\"type\":\"ok\"}\n"); return; }
+            if (copy < 0) { ss_say("{\"type\":\"bye\",\"reason\":\"fork failed\"}\n"); ss_quit(); }
+        }
+        if (word == 'q' || ends[1].revents) _exit(token ? SS_LEFT : 0);
+    }
+}
+#endif
 
 /* Saves the state: this process waits as the saved state, and its copy continues. */
 static void ss_save(void) {
 #ifdef SS_NO_FORK
     ss_say("{\"type\":\"refused\",\"reason\":\"no states are saved\"}\n");
 #else
-    char answer[64], word;
+    char answer[64];
     int token = *ss.saved;
     pid_t copy;
     if (token >= SS_STATES) { ss_say("{\"type\":\"refused\",\"reason\":\"too many saved states\"}\n"); return; }
@@ -211,9 +244,7 @@ static void ss_save(void) {
         ss_say(answer);
         return;
     }
-    while (read(ss.wake[token][0], &word, 1) == 1 && word == 'r')
-        if (fork() == 0) { ss_say("{\"type\":\"ok\"}\n"); return; }
-    _exit(0);
+    ss_wait(token);
 #endif
 }
 
@@ -231,7 +262,7 @@ static int ss_integer(const char *line, const char *key) {
 static void ss_restore(const char *line) {
     int number = ss_integer(line, "\"token\":");
     if (!ss.saved || number < 0 || number >= *ss.saved) { ss_say("{\"type\":\"refused\",\"reason\":\"no such state\"}\n"); return; }
-    if (write(ss.wake[number][1], "r", 1) == 1) _exit(0);
+    if (write(ss.wake[number][1], "r", 1) == 1) _exit(SS_LEFT);
 }
 
 static void ss_force(const char *line, int releases) {
@@ -244,6 +275,7 @@ static void ss_force(const char *line, int releases) {
     }
     ss.held[c] = !releases && strstr(line, "\"hold\":true") ? forced : -1;
     ss.once[c] = releases || ss.held[c] >= 0 ? -1 : forced;
+    if (ss.over == 1) ss.over = 0;
     ss_say("{\"type\":\"ok\"}\n");
 }
 
@@ -277,14 +309,13 @@ void ss_begin(const char *title, const char *name, const char *version) {
     dup2(nothing, 0);
     dup2(2, 1);
     close(nothing);
-    signal(SIGCHLD, SIG_IGN);
     ss.increment = ss.attempt = ss.major = ss.minor = 1;
 #ifndef SS_NO_FORK
     ss.saved = (int *)mmap(NULL, sizeof *ss.saved, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     if (ss.saved == MAP_FAILED) ss.saved = NULL;
     for (k = 0; ss.saved && k < SS_STATES; k++) if (pipe(ss.wake[k])) ss.saved = NULL;
 #endif
-    ss_add(&ss.hello, "{\"type\":\"hello\",\"protocol\":1,\"name\":");
+    ss_add(&ss.hello, "{\"type\":\"hello\",\"protocol\":1,\"protocols\":[1],\"name\":");
     ss_quoted(&ss.hello, name);
     ss_add(&ss.hello, ",\"version\":");
     ss_quoted(&ss.hello, version);
@@ -353,7 +384,7 @@ void ss_pause(const char *ended, double load, double residual, double tolerance)
 }
 
 void ss_end(void) {
-    ss.over = 1;
+    ss.over = 2;
     ss_answer();
 }
 #endif
