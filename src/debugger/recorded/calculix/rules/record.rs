@@ -77,24 +77,27 @@ pub fn chatter(run: &CalculixRun, shape: Option<&DeckShape>) -> Vec<RunFinding> 
         Some(&(attempt, count)) if attempt + 1 == attempts => (attempt, count),
         _ => (attempts, 0),
     };
-    let chattering = |count: &dyn Fn(&Switching) -> (usize, usize)| -> Vec<&Switching> {
-        let all = run.switching.iter();
-        all.filter(|found| count(found).1 >= CHATTER).collect()
+    let chattering = |(_, (_, count)): &(&Switching, (usize, usize))| *count >= CHATTER;
+    let all = || run.switching.iter();
+    let last: Vec<_> = all()
+        .map(|found| (found, in_last(found)))
+        .filter(chattering)
+        .collect();
+    let (counted, when) = match last.is_empty() {
+        true => (
+            all()
+                .map(|found| (found, found.most()))
+                .filter(chattering)
+                .collect(),
+            format!("one of {attempts} attempts"),
+        ),
+        false => (last, "the last attempt".to_owned()),
     };
-    let last = chattering(&in_last);
-    let (often, counted, when): (_, &dyn Fn(&Switching) -> (usize, usize), _) =
-        match last.is_empty() {
-            true => (
-                chattering(&Switching::most),
-                &Switching::most,
-                format!("one of {attempts} attempts"),
-            ),
-            false => (last, &in_last, "the last attempt".to_owned()),
-        };
-    let counts = often.iter().map(|found| counted(found));
+    let counts = counted.iter().map(|(_, counts)| *counts);
     let Some((attempt, count)) = counts.max_by_key(|(_, count)| *count) else {
         return Vec::new();
     };
+    let often: Vec<&Switching> = counted.iter().map(|(found, _)| *found).collect();
     let name = |slave: usize| match shape.and_then(|shape| place(run, shape, slave)) {
         Some(at) => format!("{} {at}", run.slave_with_corners(slave)),
         None => run.slave_with_corners(slave),
