@@ -6,7 +6,7 @@
 //! **cost** of a run is the processor time of its thread, from the built scene to the end of the history (the
 //! median of some repetitions), its factorizations (with condensation one per major iteration, otherwise one
 //! per minor), and its minor iterations. The **front** consists of the finished runs that no other run beats in
-//! both error and cost; errors at round-off ([`ROUND_OFF`]) count as equal.
+//! both error and cost; differences below 2 % are ties, and errors at round-off ([`ROUND_OFF`]) count as equal.
 
 use super::chart_file::{Chart, Truth};
 use super::chart_runs::{PlannedChart, TimedRun, sweep};
@@ -24,6 +24,9 @@ use stickslip_core::model::Model;
 
 /// Errors below this are round-off: a few thousand times the machine precision.
 pub const ROUND_OFF: f64 = 4096.0 * f64::EPSILON;
+
+/// Costs and errors that differ by less than this part are ties.
+const TIE: f64 = 0.02;
 
 /// A monitor that stays below this part of another of its kind is measured by the other's scale.
 const FLAT: f64 = 1e-6;
@@ -380,7 +383,9 @@ pub(super) fn mark_front(points: &mut [Point], cost: Cost) {
         .map(|point| Some((cost.of(point), point.error?.max(ROUND_OFF))))
         .collect();
     let beaten = |(x, y): (f64, f64)| {
-        let better = |&(a, b): &(f64, f64)| a <= x && b <= y && (a < x || b < y);
+        let less = |a: f64, b: f64| a * (1.0 + TIE) < b;
+        let better =
+            |&(a, b): &(f64, f64)| !less(x, a) && !less(y, b) && (less(a, x) || less(b, y));
         measured.iter().flatten().any(better)
     };
     for (point, own) in points.iter_mut().zip(&measured) {
@@ -528,12 +533,14 @@ mod tests {
             point(2.0, Some(1e-3)),
             point(3.0, Some(2e-3)), // worse than the previous one
             point(4.0, Some(1e-4)),
-            point(0.1, None),       // failed
-            point(4.0, Some(1e-4)), // equal in cost
+            point(0.1, None),           // failed
+            point(4.0, Some(1e-4)),     // equal in cost
+            point(4.05, Some(1.01e-4)), // a tie
+            point(4.1, Some(1e-4)),     // more expensive by more than 2 %
         ];
         mark_front(&mut points, Cost::Time);
         let front: Vec<bool> = points.iter().map(|p| p.front).collect();
-        assert_eq!(front, [true, true, false, true, false, true]);
+        assert_eq!(front, [true, true, false, true, false, true, true, false]);
     }
 
     #[test]
