@@ -91,7 +91,18 @@ impl Attached {
     /// # Errors
     /// The [`Fault`] that ended it.
     pub fn attach(start: Start, log: Log) -> Result<(Scene, Attached), Fault> {
-        let asks = Arc::new(AtomicUsize::new(0));
+        Attached::with_cancel(start, log, Arc::default())
+    }
+
+    /// As [`Attached::attach`], with the counter of the user's requests to stop.
+    ///
+    /// # Errors
+    /// The [`Fault`] that ended it.
+    pub fn with_cancel(
+        start: Start,
+        log: Log,
+        asks: Arc<AtomicUsize>,
+    ) -> Result<(Scene, Attached), Fault> {
         let StartedSolver {
             link,
             hello,

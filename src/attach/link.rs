@@ -17,8 +17,9 @@ use stickslip_debugger::recorded::log::Log;
 use stickslip_exchange::attach::conversation::STARTED;
 use stickslip_exchange::attach::message::{Level, Progress};
 use stickslip_exchange::attach::{Answer, Line, LineReader, MOST_BYTES, Request, Side};
-use stickslip_platform::{local_socket, process};
-use stickslip_scene::{number, shown};
+use stickslip_platform::local_socket;
+use stickslip_platform::process::{self, Guard};
+use stickslip_scene::{mesh_file, number, shown};
 
 /// Polling interval for interrupts.
 const LOOK: Duration = Duration::from_millis(10);
@@ -69,6 +70,7 @@ impl Start {
 /// A running solver.
 pub struct Link {
     child: Option<Child>,
+    guard: Option<Guard>,
     input: Option<Input>,
     output: Receiver<io::Result<Line>>,
     log: Log,
@@ -94,6 +96,7 @@ impl Link {
         let mut link = Link {
             input: None,
             child: None,
+            guard: None,
             output,
             log: log.clone(),
             stop,
@@ -127,6 +130,8 @@ impl Link {
                 child.stdout.take().map(|stream| Box::new(stream) as _),
                 child.stderr.take().map(|stream| Box::new(stream) as _),
             ];
+            // Without a shell the solver ends when it reads its input next.
+            link.guard = Guard::new(&child).ok();
             link.child = Some(child);
         }
         log.noted(&format!("{STARTED}: {}", start.typed()));
@@ -279,7 +284,7 @@ impl Link {
 
     /// Decodes a line.
     fn read(&mut self, line: Line, waiting: &Wait) -> Result<Answer, Fault> {
-        let text = match line {
+        let mut text = match line {
             Line::Text(text) => text,
             Line::End => return Err(self.died("", waiting)),
             Line::Torn(line) => {
@@ -300,13 +305,26 @@ impl Link {
                 return Err(Fault::Junk { why, line });
             }
         };
+        let mut answer = Answer::read(&text);
+        if let Ok(Answer::Scene(scene)) = &mut answer
+            && scene.mesh.is_some()
+        {
+            let (message, inserted) = ("scene", mesh_file::insert(scene));
+            inserted.map_err(|why| Fault::Unfit { message, why })?;
+            // A stored exchange names no files.
+            text = answer
+                .as_ref()
+                .map_or(text, Answer::line)
+                .trim_end()
+                .to_owned();
+        }
         match text.trim_start().starts_with('{') {
             true => self.log.exchanged(Side::Answered, &text),
             false => self
                 .log
                 .exchanged(Side::Noted, &format!("not a message: {text}")),
         }
-        Answer::read(&text).map_err(|broken| {
+        answer.map_err(|broken| {
             let letters = text.trim_start();
             let why = match broken.at {
                 _ if letters.is_empty() => "an empty line".to_owned(),
@@ -488,6 +506,7 @@ impl Drop for Link {
         // Also kills processes that the solver started.
         if let Some(child) = &mut self.child {
             process::kill(child);
+            self.guard = None;
             let _ = child.wait();
         }
     }

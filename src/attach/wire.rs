@@ -36,6 +36,7 @@ pub fn scene(model: &Model) -> Scene {
         title: model.title.clone(),
         about: model.about.clone(),
         dimension: 2,
+        mesh: None,
         nodes: model.nodes.iter().map(node).collect(),
         lines: lines.cloned().collect(),
         faces: Vec::new(),

@@ -69,7 +69,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         Some(ref file) => JournalTarget::File(file.clone()),
         None => JournalTarget::Default,
     };
-    let (scene, attached, log) = args.solver.attach(args.force)?;
+    let (scene, attached, log) = args.solver.attach(args.force, None)?;
     let text = format!(
         "attached to {} {}",
         attached.hello().name,

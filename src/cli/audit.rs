@@ -13,7 +13,7 @@ use std::sync::Arc;
 use stickslip_attach::Attached;
 use stickslip_core::contact::laws::JudgedLaw;
 use stickslip_core::model::Model;
-use stickslip_core::step::drive::{RunEnd, Until};
+use stickslip_core::step::drive::RunEnd;
 use stickslip_core::step::event::Outcome;
 use stickslip_core::step::solver::Solver;
 use stickslip_core::words::counted;
@@ -54,7 +54,9 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     let mut exit = Exit::Good;
     let mut histories = Vec::new();
     let says = !args.json.is_on_standard_output();
-    let mut solver = args.solver.attached(&args.set, args.force)?;
+    let mut solver = args
+        .solver
+        .attached(&args.set, args.force, Some(&interrupt))?;
     let of_solver = solver
         .iter_mut()
         .map(|(scene, solver)| attached(scene, solver, says, &interrupt));
@@ -121,9 +123,8 @@ fn attached(
     interrupt: &Interrupt,
 ) -> Result<HistoryRecord, Error> {
     let mut audit = Audit::default();
-    let has_arrived = || interrupt.has_arrived();
-    let until = Until::end().interrupted_by(&has_arrived);
-    let end = step_to_end(solver, until, &mut |solver| audit.take_reported(solver))?;
+    let see = &mut |solver: &dyn Solver| audit.take_reported(solver);
+    let end = step_to_end(solver, Some(interrupt), see)?;
     let Ok(history) = history(scene, &audit, end, solver, says)?;
     Ok(history)
 }

@@ -11,7 +11,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use stickslip_attach::Attached;
 use stickslip_core::model::{AtCycle, AtLimit, Strategy};
-use stickslip_core::step::drive::{RunEnd, Until};
+use stickslip_core::step::drive::RunEnd;
 use stickslip_core::step::event::Failure;
 use stickslip_core::step::solver::Solver;
 use stickslip_debugger::explain::core::core;
@@ -44,7 +44,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     let attached = args
         .subject
         .solver
-        .attached(&args.subject.set, args.force)?;
+        .attached(&args.subject.set, args.force, None)?;
     let (name, text) = match attached {
         Some((scene, mut solver)) => (scene.name, of_solver(&mut solver)?),
         None => {
@@ -84,7 +84,7 @@ enum NoCore {
 
 /// The core of the interface problem that an attached solver reports after its first failure, or why there is none.
 fn of_solver(solver: &mut Attached) -> Result<Result<String, NoCore>, Error> {
-    let end = step_to_end(solver, Until::end(), &mut |_| ())?;
+    let end = step_to_end(solver, None, &mut |_| ())?;
     if !matches!(end, RunEnd::Failed(_)) {
         return Ok(Err(NoCore::Converges("")));
     }

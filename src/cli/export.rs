@@ -11,7 +11,7 @@ use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use stickslip_core::model::Model;
-use stickslip_core::step::drive::{RunEnd, Until};
+use stickslip_core::step::drive::RunEnd;
 use stickslip_core::step::event::{Failure, Position};
 use stickslip_core::step::solver::Solver;
 use stickslip_core::step::state::{State, Status};
@@ -169,7 +169,10 @@ fn reported(args: &Args, interrupt: &Interrupt) -> Result<Exit, Error> {
             "only the frozen interface problem of an attached solver can be exported; add --frozen"
         ));
     }
-    let Some((scene, mut solver)) = args.solver.attached(&args.set, args.force)? else {
+    let Some((scene, mut solver)) = args
+        .solver
+        .attached(&args.set, args.force, Some(interrupt))?
+    else {
         return Err(usage!("no input given"));
     };
     match args.at {
@@ -179,9 +182,7 @@ fn reported(args: &Args, interrupt: &Interrupt) -> Result<Exit, Error> {
             }
         }
         None => {
-            let has_arrived = || interrupt.has_arrived();
-            let until = Until::end().interrupted_by(&has_arrived);
-            if step_to_end(&mut solver, until, &mut |_| ())? == RunEnd::Interrupted {
+            if step_to_end(&mut solver, Some(interrupt), &mut |_| ())? == RunEnd::Interrupted {
                 notify(&format!("{}: interrupted", scene.name));
                 return Ok(Exit::Interrupted);
             }

@@ -15,8 +15,8 @@ pub fn end_at_once() {
     }
 }
 
-/// The flag.
-pub struct Interrupt(Arc<AtomicBool>);
+/// The flag, and the requests to stop for an attached solver: SIGINT interrupts its iteration, SIGTERM ends it.
+pub struct Interrupt(Arc<AtomicBool>, Arc<AtomicUsize>);
 
 impl Interrupt {
     /// Installs the signal handlers. A second signal ends the program at once.
@@ -27,14 +27,16 @@ impl Interrupt {
             let _ = signal_hook::flag::register_conditional_shutdown(signal, 130, flag.clone());
             let _ = signal_hook::flag::register(signal, flag.clone());
         }
-        Interrupt(flag)
+        let asks = Arc::new(AtomicUsize::new(0));
+        for (signal, count) in SIGNALS.into_iter().zip([1, usize::MAX]) {
+            let _ = signal_hook::flag::register_usize(signal, asks.clone(), count);
+        }
+        Interrupt(flag, asks)
     }
 
-    /// Also counts signals in `asks`, which interrupts a running iteration.
-    pub fn count(&self, asks: &Arc<AtomicUsize>) {
-        for signal in SIGNALS {
-            let _ = signal_hook::flag::register_usize(signal, asks.clone(), 1);
-        }
+    /// The number of requests to stop.
+    pub fn asks(&self) -> Arc<AtomicUsize> {
+        self.1.clone()
     }
 
     /// Whether a signal has arrived.

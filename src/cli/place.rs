@@ -101,12 +101,11 @@ pub fn seek<T: Solver + ?Sized>(
     see: &mut dyn FnMut(&mut T),
 ) -> Result<u64, SeekFailure> {
     let mut steps = 0;
-    let end = drive(solver, Until::end(), |solver| {
+    let has_arrived = || interrupt.has_arrived();
+    let until = Until::end().interrupted_by(&has_arrived);
+    let end = drive(solver, until, |solver| {
         steps += 1;
         see(solver);
-        if interrupt.has_arrived() {
-            return ControlFlow::Break(Err(SeekFailure::Interrupted));
-        }
         let event = solver.event();
         let failed = matches!(event.outcome, Outcome::Failed(_));
         if at.is(event) {
@@ -117,10 +116,13 @@ pub fn seek<T: Solver + ?Sized>(
             ControlFlow::Continue(())
         }
     });
-    match end.map_err(SeekFailure::Lost)? {
-        RunEnd::Stopped(place) => place.map(|()| steps),
-        RunEnd::Failed(failure) => Err(SeekFailure::Failed(failure)),
-        RunEnd::Finished | RunEnd::Spent | RunEnd::Interrupted => Err(SeekFailure::Absent),
+    match end {
+        Err(_) if has_arrived() => Err(SeekFailure::Interrupted),
+        Err(lost) => Err(SeekFailure::Lost(lost)),
+        Ok(RunEnd::Interrupted) => Err(SeekFailure::Interrupted),
+        Ok(RunEnd::Stopped(place)) => place.map(|()| steps),
+        Ok(RunEnd::Failed(failure)) => Err(SeekFailure::Failed(failure)),
+        Ok(RunEnd::Finished | RunEnd::Spent) => Err(SeekFailure::Absent),
     }
 }
 

@@ -26,7 +26,7 @@ pub struct Args {
 
 pub fn main(args: &Args) -> Result<Exit, Error> {
     let interrupt = Interrupt::listen();
-    let Subject { scene, mut solver } = args.subject.open(args.force)?;
+    let Subject { scene, mut solver } = args.subject.open(args.force, Some(&interrupt))?;
     let path = args
         .output
         .clone()

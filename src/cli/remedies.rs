@@ -5,7 +5,7 @@ use super::base::{Error, Exit, notify, quoted, run_to_end, say};
 use super::json::{self, JsonArgs};
 use super::records::{FailureKind, FailureRecord, RemediesRecord, RemedyRecord};
 use super::solver::{Subject, SubjectArgs, step_to_end};
-use stickslip_core::step::drive::{RunEnd, Until};
+use stickslip_core::step::drive::RunEnd;
 use stickslip_core::step::solver::Solver;
 use stickslip_core::step::state::State;
 use stickslip_debugger::explain::examination::Examination;
@@ -44,7 +44,7 @@ pub fn command(scene: &Scene) -> String {
 }
 
 pub fn main(args: &Args) -> Result<Exit, Error> {
-    let Subject { scene, mut solver } = args.subject.open(args.force)?;
+    let Subject { scene, mut solver } = args.subject.open(args.force, None)?;
     let json = args.json.open(args.force)?;
     let spec = Some(&scene.spec);
     let mut record = RemediesRecord {
@@ -57,7 +57,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     };
     let failure = match solver.stepper() {
         Some(stepper) => run_to_end(stepper),
-        None => match step_to_end(solver.as_mut(), Until::end(), &mut |_| ())? {
+        None => match step_to_end(solver.as_mut(), None, &mut |_| ())? {
             RunEnd::Failed(failure) => Some(failure),
             _ => None,
         },

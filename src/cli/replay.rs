@@ -123,7 +123,7 @@ fn one(file: &Path, solver: &SolverArgs) -> Result<ReplayResult, Error> {
     };
     let replayed = match solver.is_named() {
         true => {
-            let (_, mut attached, _) = solver.attach(false)?;
+            let (_, mut attached, _) = solver.attach(false, None)?;
             recorded.replay_with(&mut attached)
         }
         false => recorded.replay(),

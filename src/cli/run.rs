@@ -9,8 +9,6 @@ use super::run_outputs::{RunOutputArgs, RunOutputs};
 use super::solver::{Subject, SubjectArgs};
 use super::tally::{MOST_STRETCHES, Stretches, Tally};
 use std::ops::ControlFlow;
-use std::sync::Arc;
-use std::sync::atomic::AtomicUsize;
 use stickslip_core::model::{Control, Jumps, Touch};
 use stickslip_core::step::drive::{RunEnd, Until, drive};
 use stickslip_core::step::event::Failure;
@@ -51,15 +49,12 @@ pub struct Args {
 
 pub fn main(args: &Args) -> Result<Exit, Error> {
     let interrupt = Interrupt::listen();
-    let Subject { scene, mut solver } = args.subject.open(args.force)?;
+    let Subject { scene, mut solver } = args.subject.open(args.force, Some(&interrupt))?;
     if args.outputs.vtu.is_some() && solver.stepper().is_none() {
         return Err(usage!(
             "--vtu cannot be used here: there are no bodies, only contacts"
         ));
     }
-    let asks = Arc::new(AtomicUsize::new(0));
-    interrupt.count(&asks);
-    solver.set_cancel(asks);
     // Opened before the solve, so that its results can be written.
     let mut outputs = RunOutputs::open(&args.outputs, &scene, args.force)?;
     let mut run = Run::new(&scene, solver, args);
@@ -177,6 +172,7 @@ impl<'a> Run<'a> {
         });
         let end = match end {
             Ok(end) => end,
+            Err(_) if interrupt.has_arrived() => RunEnd::Interrupted,
             Err(lost) => return Ok(Err(lost)),
         };
         Ok(Ok(match end {

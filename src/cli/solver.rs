@@ -1,6 +1,7 @@
 //! The subject of a run: a scene for stickslip's own solver, or an attached solver.
 
 use super::base::{Error, SetArgs, notify, usage};
+use super::interrupt::Interrupt;
 use std::convert::Infallible;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -83,11 +84,12 @@ impl SolverArgs {
         Ok(log)
     }
 
-    /// Starts the solver, if one is given; changes to a scene are refused.
+    /// Starts the solver, if one is given; changes to a scene are refused. `interrupt` also ends its iterations.
     pub fn attached(
         &self,
         set: &SetArgs,
         overwrite: bool,
+        interrupt: Option<&Interrupt>,
     ) -> Result<Option<(Scene, Attached)>, Error> {
         if !self.is_named() {
             return Ok(None);
@@ -97,12 +99,16 @@ impl SolverArgs {
                 "--set {path}: only for scenes; set a solver's parameters by its arguments or in the debugger (:set)"
             ));
         }
-        let (scene, attached, _) = self.attach(overwrite)?;
+        let (scene, attached, _) = self.attach(overwrite, interrupt)?;
         Ok(Some((scene, attached)))
     }
 
     /// Starts the solver; `overwrite` allows the exchange to replace an existing file.
-    pub fn attach(&self, overwrite: bool) -> Result<(Scene, Attached, Log), Error> {
+    pub fn attach(
+        &self,
+        overwrite: bool,
+        interrupt: Option<&Interrupt>,
+    ) -> Result<(Scene, Attached, Log), Error> {
         if let Some(channel) = &self.listen {
             if !(self.remote || channel.is_local()) {
                 return Err(usage!(
@@ -114,7 +120,8 @@ impl SolverArgs {
             }
         }
         let log = self.log(overwrite)?;
-        let attached = Attached::attach(self.start(), log.clone());
+        let asks = interrupt.map(Interrupt::asks).unwrap_or_default();
+        let attached = Attached::with_cancel(self.start(), log.clone(), asks);
         let (scene, attached) = attached.map_err(Error::usage)?;
         Ok((scene, attached, log))
     }
@@ -126,18 +133,22 @@ const MOST_STEPS: u64 = 10_000;
 /// Steps an attached solver until an increment fails, and calls `see` after each iteration.
 pub fn step_to_end(
     solver: &mut dyn Solver,
-    until: Until<'_>,
+    interrupt: Option<&Interrupt>,
     see: &mut dyn FnMut(&dyn Solver),
 ) -> Result<RunEnd<Infallible>, Error> {
+    let has_arrived = || interrupt.is_some_and(Interrupt::has_arrived);
+    let until = Until::end().interrupted_by(&has_arrived);
     let end = drive(solver, until.minors(MOST_STEPS), |solver| {
         see(solver);
         ControlFlow::Continue(())
     });
-    match end.map_err(Error::usage)? {
-        RunEnd::Spent => Err(usage!(
+    match end {
+        Err(_) if has_arrived() => Ok(RunEnd::Interrupted),
+        Err(lost) => Err(Error::usage(lost)),
+        Ok(RunEnd::Spent) => Err(usage!(
             "the solver neither failed nor ended within {MOST_STEPS} iterations"
         )),
-        end => Ok(end),
+        Ok(end) => Ok(end),
     }
 }
 
@@ -161,8 +172,8 @@ pub struct Subject {
 
 impl SubjectArgs {
     /// Opens the scene, or attaches the solver.
-    pub fn open(&self, overwrite: bool) -> Result<Subject, Error> {
-        if let Some((scene, attached)) = self.solver.attached(&self.set, overwrite)? {
+    pub fn open(&self, overwrite: bool, interrupt: Option<&Interrupt>) -> Result<Subject, Error> {
+        if let Some((scene, attached)) = self.solver.attached(&self.set, overwrite, interrupt)? {
             return Ok(Subject {
                 scene,
                 solver: Box::new(attached),
@@ -188,7 +199,7 @@ pub fn session_of(record: &Record, solver: &SolverArgs) -> Result<Session, Error
     match (solver.is_named(), &header.scene.attached) {
         (false, None) => Ok(Session::new(record.scene()?)),
         (true, Some(_)) => {
-            let (scene, attached, log) = solver.attach(false)?;
+            let (scene, attached, log) = solver.attach(false, None)?;
             match scene.spec == header.scene {
                 true => Ok(Session::attached(scene, Box::new(attached), log)),
                 false => wrong("the solver's scene differs from the journal's".into()),

@@ -18,7 +18,7 @@
 //! - [`siconos`]: Siconos friction problems in text form.
 //! - [`matrix_market`]: single matrices in Matrix Market format.
 //! - [`fclib`]: friction problems in HDF5 files of the library fclib, with the feature `fclib`.
-//! - [`vtu`]: results for ParaView: VTK unstructured grids, and collections of them.
+//! - [`vtu`]: results for ParaView: VTK unstructured grids, and collections of them; [`vtu_reader`]: their meshes.
 //! - [`attach`]: the protocol for stepping other programs' solvers.
 
 #![forbid(unsafe_code)]
@@ -35,4 +35,5 @@ pub mod problem;
 pub mod seal;
 pub mod siconos;
 pub mod vtu;
+pub mod vtu_reader;
 pub mod words;

@@ -4,7 +4,7 @@ use rustix::io::ioctl_fionbio;
 use rustix::process::{Pid, Signal, WaitId, WaitIdOptions, kill_process_group, waitid};
 use std::io;
 use std::os::unix::process::CommandExt;
-use std::process::{Child, ChildStdin, Command};
+use std::process::{Child, ChildStdin, Command, Stdio};
 
 /// Gives the process a group, so that a Ctrl-C in the terminal reaches only this program.
 pub fn set_group(command: &mut Command) -> &mut Command {
@@ -34,6 +34,34 @@ pub fn end(child: &mut Child) -> Option<String> {
         }
         // The process no longer exists.
         Err(_) => Some("ended".into()),
+    }
+}
+
+/// Kills a process group if this program ends in any way before the guard is dropped.
+pub struct Guard(Child);
+
+/// Waits for the end of its input, which only this program keeps open. A process that reads its own input has a second to end.
+const GUARD: &str = "trap '' HUP INT TERM; read -r line; sleep 1; kill -KILL \"-$1\"";
+
+impl Guard {
+    /// Guards the group of a process.
+    ///
+    /// # Errors
+    /// From the system.
+    pub fn new(child: &Child) -> io::Result<Guard> {
+        let mut command = Command::new("/bin/sh");
+        let group = child.id().to_string();
+        command.args(["-c", GUARD, "stickslip-guard", &group]);
+        command.stdin(Stdio::piped()).stdout(Stdio::null());
+        set_group(command.stderr(Stdio::null())).spawn().map(Guard)
+    }
+}
+
+impl Drop for Guard {
+    /// To be dropped before the process is reaped, after which the number of its group may be reused.
+    fn drop(&mut self) {
+        kill(&mut self.0);
+        let _ = self.0.wait();
     }
 }
 

@@ -80,6 +80,9 @@ pub(super) fn compile(spec: &Spec, text: &str) -> Result<(Model, Names), Fault> 
     if !(2..=3).contains(&scene.dimension) {
         return refused("dimension: must be 2 or 3");
     }
+    if scene.mesh.is_some() {
+        return refused("mesh: only a running solver can name a file");
+    }
     let nodes = nodes(&scene)?;
     let (surfaces, numbers) = surfaces(&scene)?;
     let contacts = contacts(&scene, &numbers)?;

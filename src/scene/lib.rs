@@ -6,7 +6,7 @@
 //! - [`cost`]: estimated time and memory of a scene, and unused features; [`memory`]: available memory.
 //! - [`base`]: a scene read once for many settings; [`solver`]: creates the solver of a scene, with all threads.
 //! - `deck`: CalculiX and Abaqus decks; [`import`]: meshes of other programs.
-//! - [`attached`]: scenes sent by attached solvers.
+//! - [`attached`]: scenes sent by attached solvers; [`mesh_file`]: their meshes in files.
 //! - `pressed`: detects prescribed displacements that compress a solid beyond the range of its law.
 //! - [`problems`]: interface problems of other programs.
 //! - [`builtin`]: the built-in scenes; [`embedded`](mod@embedded): other embedded files.
@@ -27,6 +27,7 @@ pub mod gaps;
 pub mod import;
 pub mod limits;
 pub mod memory;
+pub mod mesh_file;
 pub mod nodes;
 pub mod number;
 pub mod precision;

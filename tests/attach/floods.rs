@@ -1,7 +1,9 @@
 //! Solvers that say too much, or do not listen: memory and time stay bounded.
 
-use super::side::{Rude, does, is_harmless, minor};
+use super::program::{err, out, program};
+use super::side::{PATIENT, Rude, does, is_harmless, minor};
 use libtest_mimic::Trial;
+use std::process::{Command as Process, Stdio};
 use std::time::{Duration, Instant};
 use stickslip::record::command::{Command, Unit};
 
@@ -12,6 +14,7 @@ pub fn tests() -> Vec<Trial> {
         who_talks_for_ever_is_stopped_in_time,
         a_solver_that_does_not_read_its_input_does_not_hold_the_debugger,
         one_that_does_not_hear_bye_is_ended_with_what_it_started,
+        a_solver_that_computes_ends_with_the_program_however_that_ends,
     ]
 }
 
@@ -127,4 +130,48 @@ fn one_that_does_not_hear_bye_is_ended_with_what_it_started() {
         began.elapsed()
     );
     rude.is_gone();
+}
+
+/// Two iterations are in the table when the third one is ended.
+fn a_solver_that_computes_ends_with_the_program_however_that_ends() {
+    for (signals, exit) in [
+        (&["-TERM"][..], Some(130)),
+        (&["-INT", "-INT"], Some(130)),
+        (&["-KILL"], None),
+    ] {
+        let rude = Rude::new("hang-deaf");
+        let mut arguments = vec!["run", "--trace", "-", "--exchange", "kept", "--"];
+        arguments.extend(rude.start.command.iter().map(String::as_str));
+        let mut run = program(&rude.folder(), &arguments);
+        let run = run.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
+        let run = run.unwrap();
+        let began = Instant::now();
+        let asked = || {
+            let kept = std::fs::read_to_string(rude.folder().join("kept")).unwrap_or_default();
+            kept.matches(r#"> {"type":"step"}"#).count()
+        };
+        while asked() < 3 {
+            assert!(began.elapsed() < PATIENT);
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        let began = Instant::now();
+        for signal in signals {
+            let number = run.id().to_string();
+            let sent = Process::new("kill").args([*signal, &number]).status();
+            assert!(sent.unwrap().success());
+            std::thread::sleep(Duration::from_millis(50));
+        }
+        let output = run.wait_with_output().unwrap();
+        rude.is_gone();
+        assert!(began.elapsed() < Duration::from_secs(4), "{signals:?}");
+        assert_eq!(output.status.code(), exit, "{signals:?}: {}", err(&output));
+        if signals == ["-TERM"] {
+            assert_eq!(super::program::rows(&out(&output)).len(), 4);
+            assert!(
+                err(&output).contains("interrupted before"),
+                "{}",
+                err(&output)
+            );
+        }
+    }
 }

@@ -3,41 +3,34 @@ program loops
   use stickslip_attach
   use, intrinsic :: ieee_arithmetic
   implicit none
-  double precision :: x, y, f_n, f_t, t_max, px, py, g0, mu, xx, xy, yy, det, a, b, none
-  integer :: node, from, to, c, next, mode, k
-  a = 95 * acos(-1d0) / 180; b = 30 * acos(-1d0) / 180; mu = 0.2d0; g0 = 0.05d0; px = -1; py = -0.05d0; t_max = 0
+  double precision, parameter :: px = 1, py = 0.25d0, mu = 0.2d0
+  double precision :: x, y, f_n, f_t, limit, none
+  integer :: node, floor(2), contact, next, mode, k
   none = ieee_value(none, ieee_quiet_nan)
-  xx = 10*cos(a)**2 + .1d0*cos(b)**2; xy = 10*cos(a)*sin(a) + .1d0*cos(b)*sin(b); yy = 10*sin(a)**2 + .1d0*sin(b)**2
-  det = xx*yy - xy*xy
-  node = ss_node(0d0, g0); from = ss_node(5d0, 0d0); to = ss_node(-5d0, 0d0)
-  call ss_surface("floor", [from, to], .true.)
-  c = ss_contact(node, "floor", mu, 0d0, ss_free)
-  call ss_begin("A node that opens where it sticks", "loops in Fortran", "1")
   next = ss_free
+  node = ss_node(0d0, 0d0)
+  floor = [ss_node(5d0, 0d0), ss_node(-5d0, 0d0)]
+  call ss_surface("floor", floor, .true.)
+  contact = ss_contact(node, "floor", mu, 0d0, next)
+  call ss_begin("A node that opens where it sticks", "loops in Fortran", "1")
   do k = 1, 40
-    mode = ss_mode(c, next)
-    f_n = 0; f_t = 0; y = -g0
-    select case (mode)                      ! n = (0, 1), t = (-1, 0): K u = p + f
-    case (ss_free)
-      x = (yy*px - xy*py)/det; y = (xx*py - xy*px)/det
-    case (ss_fixed)
-      x = 0; f_t = px - xy*y; f_n = yy*y - py
-    case default
-      f_t = t_max; x = (px - f_t - xy*y)/xx; f_n = xy*x + yy*y - py
-    end select
-    t_max = sign(mu*abs(f_n), f_t)
+    mode = ss_mode(contact, next)
+    y = merge(2*py - px, 0d0, mode == ss_free)
+    x = merge(px - py, 0d0, mode == ss_free)
+    if (mode == ss_sliding) x = (px + mu*py)/(2 + mu)
+    f_n = x + y - py
+    f_t = px - 2*x - y
+    limit = sign(mu*abs(f_n), f_t)
     if (mode == ss_free) then
-      next = merge(ss_fixed, ss_free, g0 + y < 0)
+      next = merge(ss_fixed, ss_free, y < 0)
     else if (f_n <= 0) then
       next = ss_free
     else if (mode == ss_fixed) then
-      next = merge(ss_sliding, ss_fixed, abs(f_t) > abs(t_max))
-    else
-      next = merge(ss_fixed, ss_sliding, t_max*x < 0)
+      next = merge(ss_sliding, ss_fixed, abs(f_t) > abs(limit))
     end if
-    call ss_contact_result(c, mode, next, g0 + y, f_n, f_t, t_max, -x)
+    call ss_contact_result(contact, mode, next, y, f_n, f_t, limit, x)
     call ss_displacement(node, x, y)
-    call ss_pause(trim(merge("failure  ", "iteration", k == 40)), 1d0, none, none)
+    call ss_pause(trim(merge("done     ", merge("iteration", "failure  ", k < 40), next == mode)), 1d0, none, none)
   end do
   call ss_end()
 end program

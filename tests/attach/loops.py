@@ -1,37 +1,28 @@
 """The node of loops.c in Python."""
-from math import copysign, cos, radians, sin
+from math import copysign
 from stickslip_attach import Loops
 
-a, b, mu, g0, px, py, t_max = radians(95), radians(30), 0.2, 0.05, -1, -0.05, 0.0
-xx, yy = (10 * f(a) ** 2 + 0.1 * f(b) ** 2 for f in (cos, sin))
-xy = 10 * cos(a) * sin(a) + 0.1 * cos(b) * sin(b)
-det = xx * yy - xy * xy
+px, py, mu = 1.0, 0.25, 0.2
 loops = Loops({
-    "title": "A node that opens where it sticks", "nodes": [{"at": [0, g0]}, {"at": [5, 0]}, {"at": [-5, 0]}],
+    "title": "A node that opens where it sticks", "nodes": [{"at": [0, 0]}, {"at": [5, 0]}, {"at": [-5, 0]}],
     "surfaces": [{"name": "floor", "nodes": [1, 2], "rigid": True}],
     "contacts": [{"id": 0, "node": 0, "surface": "floor", "friction": {"mu": mu}}]}, name="loops in Python")
 chosen = "free"
 for k in range(1, 41):
     [mode] = loops.modes([chosen])
-    f_n, f_t, y = 0.0, 0.0, -g0  # n = (0, 1), t = (-1, 0): K u = p + f
+    y = 2 * py - px if mode == "free" else 0.0
+    x = {"free": px - py, "sliding": (px + mu * py) / (2 + mu), "fixed": 0.0}[mode]
+    f_n = x + y - py
+    f_t = px - 2 * x - y
+    limit = copysign(mu * abs(f_n), f_t)
     if mode == "free":
-        x, y = (yy * px - xy * py) / det, (xx * py - xy * px) / det
-    elif mode == "fixed":
-        x, f_t, f_n = 0.0, px - xy * y, yy * y - py
-    else:
-        f_t = t_max
-        x = (px - f_t - xy * y) / xx
-        f_n = xy * x + yy * y - py
-    t_max = copysign(mu * abs(f_n), f_t)
-    if mode == "free":
-        chosen = "fixed" if g0 + y < 0 else "free"
+        chosen = "fixed" if y < 0 else "free"
     elif f_n <= 0:
         chosen = "free"
     elif mode == "fixed":
-        chosen = "sliding" if abs(f_t) > abs(t_max) else "fixed"
-    else:
-        chosen = "fixed" if t_max * x < 0 else "sliding"
+        chosen = "sliding" if abs(f_t) > abs(limit) else "fixed"
     loops.pause(
-        ended="failure" if k == 40 else "iteration", load=1, displacements=[[x, y], [0, 0], [0, 0]],
-        contacts=[{"mode": mode, "next": chosen, "gap": g0 + y, "f_n": f_n, "f_t": f_t, "limit": t_max, "slip": -x}])
+        ended="done" if chosen == mode else "iteration" if k < 40 else "failure", load=1,
+        displacements=[[x, y], [0, 0], [0, 0]],
+        contacts=[{"mode": mode, "next": chosen, "gap": y, "f_n": f_n, "f_t": f_t, "limit": limit, "slip": x}])
 loops.end()

@@ -487,8 +487,11 @@ fn a_lagged_t_max_is_inferred_from_the_iterations_of_a_solver() {
             "{page}"
         );
     }
+    let lag = "T_max lags by one iteration; with a consistent T_max, Table 2 finds";
+    assert!(!page_of_failure("osc-two6", "").contains(lag));
     // The only mode that slides is held by the pushes of its own lagged T_max.
     let page = page_of_failure("osc-lag4", "");
+    assert!(page.contains(lag), "{page}");
     assert!(
         page.contains("new T_max of a  a opens   ΔF_n = -5.621"),
         "{page}"

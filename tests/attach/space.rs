@@ -27,6 +27,7 @@ pub fn tests() -> Vec<Trial> {
             a_solver_in_space_passes_every_check,
             a_check_finds_friction_off_the_slip,
             a_stored_exchange_in_space_has_the_same_states,
+            the_mesh_of_a_scene_may_be_a_file,
             remedies_are_tried_on_the_solver_itself,
             a_vtu_has_three_coordinates,
             a_solver_connects_to_a_socket_and_starts_again_to_go_back,
@@ -292,4 +293,130 @@ fn a_vtu_has_three_coordinates() {
         "{force:?}"
     );
     assert!(grid.on_points.iter().all(|array| array.name != "rotation"));
+}
+
+/// A brick over a plane: eight nodes and one of a second brick's faces as the master.
+const BRICKS: &str = "*NODE, NSET=ALL
+11, 0, 0, 0
+12, 1, 0, 0
+13, 1, 1, 0
+14, 0, 1, 0
+15, 0, 0, 1
+16, 1, 0, 1
+17, 1, 1, 1
+18, 0, 1, 1
+21, 0, 0, -1
+22, 1, 0, -1
+23, 1, 1, -1
+24, 0, 1, -1
+25, 0, 0, -0.1
+26, 1, 0, -0.1
+27, 1, 1, -0.1
+28, 0, 1, -0.1
+*ELEMENT, TYPE=C3D8, ELSET=TOP
+1, 11, 12, 13, 14, 15, 16, 17, 18
+*ELEMENT, TYPE=C3D8, ELSET=BOTTOM
+2, 21, 22, 23, 24, 25, 26, 27, 28
+*SURFACE, NAME=FLOOR
+2, S2
+*STEP
+*STATIC
+*END STEP
+";
+
+/// A state without displacements of the mesh and of one node after it.
+const ON_BRICKS: &str = r#"import sys
+from stickslip_attach import Loops
+surface = {"name": "floor"}
+if sys.argv[2:]:
+    surface["faces"] = [[12, 15, 14, 13]]
+loops = Loops({"title": "bricks", "dimension": 3, "mesh": sys.argv[1], "nodes": [{"name": "eye", "at": [5, 5, 5]}],
+               "surfaces": [surface], "contacts": [{"id": 7, "node": 2, "surface": "floor"}]})
+loops.pause(ended="done", load=1, displacements=[[0, 0, 0]] * 17,
+            contacts=[{"mode": "free", "next": "free", "gap": 0.1, "f_n": 0, "f_t": [0, 0], "limit": 0, "slip": [0, 0]}])
+loops.end()
+"#;
+
+fn the_mesh_of_a_scene_may_be_a_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).display().to_string();
+    std::fs::write(at("stickslip_attach.py"), PYTHON).unwrap();
+    std::fs::write(at("bricks.py"), ON_BRICKS).unwrap();
+    std::fs::write(at("job.inp"), BRICKS).unwrap();
+    let solver = |arguments: &[&str]| Start {
+        start: PATIENT,
+        answer: PATIENT,
+        ..Start::new(
+            [&["python3", &at("bricks.py")], arguments]
+                .concat()
+                .iter()
+                .map(|word| (*word).to_owned())
+                .collect(),
+        )
+    };
+    let log = Log::default();
+    log.keep(Path::new(&at("kept")), false).unwrap();
+    let mut of_deck = session(solver(&[&at("job.inp")]), &log);
+    does(&mut of_deck, run());
+    assert!(of_deck.frames().len() == 2, "{}", of_deck.frames().len());
+    let model = of_deck.scene().model.clone();
+    let names: Vec<&str> = model.nodes.iter().map(|node| node.name.as_str()).collect();
+    assert_eq!((names.len(), names[2], names[16]), (17, "13", "eye"));
+    // The top face of the lower brick, and the edges of both.
+    assert_eq!(model.surfaces[0].elements.len(), 4);
+    let bars = |model: &stickslip::model::Model| match &model.bodies[0].kind {
+        stickslip::model::BodyKind::Linear(linear) => linear.bars.len(),
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(bars(&model), 24);
+    // The same mesh as a .vtu, whose nodes have no names.
+    let state = &of_deck.frame().state;
+    let whole = grid(&model, state, None, state.next, 3.0).unwrap();
+    let brick = |first: usize| stickslip_exchange::mesh::Cell {
+        kind: stickslip_exchange::mesh::CellKind::Hexa8,
+        nodes: (first..first + 8).collect(),
+    };
+    let written = stickslip_exchange::vtu::Grid {
+        points: whole.points[..16].to_vec(),
+        cells: vec![brick(0), brick(8)],
+        ..Default::default()
+    };
+    std::fs::write(at("job.vtu"), stickslip_exchange::vtu::write(&written)).unwrap();
+    let of_vtu = session(solver(&[&at("job.vtu"), "faces"]), &Log::default());
+    let other = of_vtu.scene().model.clone();
+    assert_eq!(bars(&other), 24);
+    let places = |model: &stickslip::model::Model| -> Vec<[f64; 2]> {
+        model.nodes.iter().map(|node| node.at).collect()
+    };
+    assert_eq!(places(&model), places(&other));
+    // The exchange has the mesh, not the name of a file.
+    std::fs::remove_file(at("job.inp")).unwrap();
+    let text = std::fs::read_to_string(at("kept")).unwrap();
+    let opened = exchange::open("bricks", &text).unwrap();
+    assert_eq!(places(&opened.scene.model), places(&model));
+    for (file, why) in [
+        ("job.inp", "mesh: "),
+        ("bricks.py", "expected a file .inp or .vtu"),
+        ("stickslip.vtu", "mesh: "),
+    ] {
+        let fault = Attached::attach(solver(&[&at(file)]), Log::default()).err();
+        let fault = fault.unwrap().to_string();
+        assert!(fault.contains(why) && fault.contains(file), "{fault}");
+    }
+    let named = text.replace(
+        r#""title":"bricks""#,
+        r#""title":"bricks","mesh":"job.inp""#,
+    );
+    let lines = named
+        .lines()
+        .map(|line| line.rsplit_once('\t').map_or(line, |(line, _)| line));
+    let unsealed = ["# stickslip exchange 1".to_owned()].into_iter();
+    let unsealed: Vec<String> = unsealed.chain(lines.skip(1).map(String::from)).collect();
+    let refused = exchange::open("named", &(unsealed.join("\n") + "\n"))
+        .err()
+        .unwrap();
+    assert!(
+        refused.to_string().contains("only a running solver"),
+        "{refused}"
+    );
 }

@@ -233,6 +233,7 @@ fn scene(contacts: usize) -> Scene {
         title: format!("{contacts} contacts"),
         about: String::new(),
         dimension: 2,
+        mesh: None,
         nodes,
         lines: vec![(0..contacts).collect()],
         faces: Vec::new(),

@@ -150,19 +150,23 @@ fn show(name: &str, scene: &Scene) {
 
 /// Checks the diagnosis pages of the scenes that fail.
 fn pages(asked: &Asked) -> ExitCode {
-    let (mut failed, mut faulty) = (0, 0);
+    let (mut failed, mut faulty, mut ended) = (0, 0, 0);
     for number in asked.from..asked.from + asked.count.unwrap_or(SCENES) {
         let Ok((_, scene)) = tally::scene(asked.seed, number, &asked.set) else {
             continue;
         };
-        let Some(faults) = outside::page::faults(&scene) else {
+        let Some(page) = outside::page::check(&scene) else {
             continue;
         };
         failed += 1;
-        faulty += usize::from(!faults.is_empty());
-        println!("{number}: {}", faults.join("; "));
+        faulty += usize::from(!page.faults.is_empty());
+        ended += usize::from(page.ends);
+        println!("{number}: {}", page.cause);
+        page.faults.iter().for_each(|fault| println!("  {fault}"));
     }
-    println!("{failed} scenes fail, {faulty} of their pages have faults");
+    println!(
+        "{failed} scenes fail; the pages of {ended} show that no valid state is ahead, and {faulty} pages have faults"
+    );
     ExitCode::from(u8::from(faulty > 0))
 }
 

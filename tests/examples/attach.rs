@@ -223,6 +223,7 @@ fn told() -> Scene {
         title: "Nodes on springs over a rough floor".into(),
         about: String::new(),
         dimension: 2,
+        mesh: None,
         nodes,
         lines: vec![(0..GAPS.len()).collect()],
         faces: Vec::new(),

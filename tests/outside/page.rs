@@ -13,8 +13,25 @@ use stickslip::step::stepper::Stepper;
 /// Minor iterations after which a run is given up.
 const MOST: usize = 60_000;
 
-/// Faults of the page of a scene's failure. `None` if the scene does not fail.
-pub fn faults(scene: &Scene) -> Option<Vec<String>> {
+/// What a page shows to be the end of a run: there is no valid state ahead.
+const ENDS: [&str; 4] = [
+    "limit load: ",
+    " is inverted: ",
+    " softens below ",
+    "so no iteration can find any",
+];
+
+/// The page of a failure, checked.
+pub struct CheckedPage {
+    pub faults: Vec<String>,
+    /// The first cause, or the first that shows that no valid state is ahead.
+    pub cause: String,
+    /// Whether there is such a cause.
+    pub ends: bool,
+}
+
+/// The page of a scene's failure. `None` if the scene does not fail.
+pub fn check(scene: &Scene) -> Option<CheckedPage> {
     let mut stepper = Stepper::new(Arc::new(scene.model.clone()));
     let mut failed = false;
     for _ in 0..MOST {
@@ -34,13 +51,23 @@ pub fn faults(scene: &Scene) -> Option<Vec<String>> {
         &|| false,
         &mut |_| {},
     );
-    Some(match made {
-        Some(page) => of(&page),
-        None => vec!["no page".into()],
+    let Some(page) = made else {
+        return Some(CheckedPage {
+            faults: vec!["no page".into()],
+            cause: String::new(),
+            ends: false,
+        });
+    };
+    let shows = |why: &&String| ENDS.iter().any(|words| why.contains(words));
+    let end = page.why.iter().find(shows);
+    Some(CheckedPage {
+        faults: faults(&page),
+        cause: end.or(page.why.first()).cloned().unwrap_or_default(),
+        ends: end.is_some(),
     })
 }
 
-fn of(page: &DiagnosisPage) -> Vec<String> {
+fn faults(page: &DiagnosisPage) -> Vec<String> {
     let mut faults = Vec::new();
     let mut seen = HashSet::new();
     if page.what.is_empty() || page.why.is_empty() {

@@ -23,7 +23,7 @@ fn the_pages_of_failed_scenes_do_not_contradict_themselves() {
     let mut failed = 0;
     for name in &names {
         let scene = Scene::open(name, &[]).unwrap_or_else(|error| panic!("{error}"));
-        let faults = page::faults(&scene);
+        let faults = page::check(&scene).map(|page| page.faults);
         failed += usize::from(faults.is_some());
         let faults = faults.unwrap_or_default();
         assert!(faults.is_empty(), "{name}: {faults:#?}");
@@ -37,7 +37,8 @@ fn the_pages_of_failed_scenes_do_not_contradict_themselves() {
         let Ok((_, scene)) = tally::scene(1, number, &[]) else {
             panic!("scene {number}");
         };
-        let faults = page::faults(&scene).unwrap_or_else(|| panic!("scene {number} finishes"));
+        let page = page::check(&scene).unwrap_or_else(|| panic!("scene {number} finishes"));
+        let faults = page.faults;
         assert!(faults.is_empty(), "scene {number}: {faults:#?}");
     }
 }

@@ -23,6 +23,7 @@ module stickslip_attach
   implicit none
   private
   public :: ss_node, ss_line, ss_surface, ss_contact, ss_begin, ss_mode, ss_contact_result, ss_displacement, ss_pause, ss_end
+  public :: ss_node_3d, ss_surface_3d, ss_frame, ss_contact_result_3d, ss_displacement_3d
   integer, parameter, public :: ss_free = 0, ss_sliding = 1, ss_fixed = 2
 
   interface
@@ -51,6 +52,23 @@ module stickslip_attach
     end subroutine
     subroutine c_displacement(node, x, y) bind(c, name="ss_displacement")
       import; integer(c_int), value :: node; real(c_double), value :: x, y
+    end subroutine
+    integer(c_int) function c_node_3d(x, y, z) bind(c, name="ss_node_3d")
+      import; real(c_double), value :: x, y, z
+    end function
+    subroutine c_surface_3d(name, corners, faces, each, rigid) bind(c, name="ss_surface_3d")
+      import; character(kind=c_char), intent(in) :: name(*); integer(c_int), intent(in) :: corners(*)
+      integer(c_int), value :: faces, each, rigid
+    end subroutine
+    subroutine c_frame(contact, normal, tangent) bind(c, name="ss_frame")
+      import; integer(c_int), value :: contact; real(c_double), intent(in) :: normal(*), tangent(*)
+    end subroutine
+    subroutine c_contact_result_3d(contact, mode, next, gap, f_n, f_t, limit, slip) bind(c, name="ss_contact_result_3d")
+      import; integer(c_int), value :: contact, mode, next; real(c_double), value :: gap, f_n, limit
+      real(c_double), intent(in) :: f_t(*), slip(*)
+    end subroutine
+    subroutine c_displacement_3d(node, x, y, z) bind(c, name="ss_displacement_3d")
+      import; integer(c_int), value :: node; real(c_double), value :: x, y, z
     end subroutine
     subroutine c_pause(ended, load, residual, tolerance) bind(c, name="ss_pause")
       import; character(kind=c_char), intent(in) :: ended(*); real(c_double), value :: load, residual, tolerance
@@ -105,6 +123,39 @@ contains
     integer, intent(in) :: node
     real(c_double), intent(in) :: x, y
     call c_displacement(node - 1, x, y)
+  end subroutine
+
+  integer function ss_node_3d(x, y, z)
+    real(c_double), intent(in) :: x, y, z
+    ss_node_3d = c_node_3d(x, y, z) + 1
+  end function
+
+  ! Faces are the columns of `corners`.
+  subroutine ss_surface_3d(name, corners, rigid)
+    character(*), intent(in) :: name
+    integer, intent(in) :: corners(:, :)
+    logical, intent(in) :: rigid
+    integer(c_int) :: list(size(corners))
+    list = reshape(corners - 1, [size(corners)])
+    call c_surface_3d(trim(name)//c_null_char, list, size(corners, 2), size(corners, 1), merge(1, 0, rigid))
+  end subroutine
+
+  subroutine ss_frame(contact, normal, tangent)
+    integer, intent(in) :: contact
+    real(c_double), intent(in) :: normal(3), tangent(3)
+    call c_frame(contact - 1, normal, tangent)
+  end subroutine
+
+  subroutine ss_contact_result_3d(contact, mode, next, gap, f_n, f_t, limit, slip)
+    integer, intent(in) :: contact, mode, next
+    real(c_double), intent(in) :: gap, f_n, f_t(2), limit, slip(2)
+    call c_contact_result_3d(contact - 1, mode, next, gap, f_n, f_t, limit, slip)
+  end subroutine
+
+  subroutine ss_displacement_3d(node, x, y, z)
+    integer, intent(in) :: node
+    real(c_double), intent(in) :: x, y, z
+    call c_displacement_3d(node - 1, x, y, z)
   end subroutine
 
   subroutine ss_pause(ended, load, residual, tolerance)

@@ -23,6 +23,10 @@
  */
 #ifndef STICKSLIP_ATTACH_H
 #define STICKSLIP_ATTACH_H
+#if defined SS_IMPLEMENTATION && !defined _DEFAULT_SOURCE
+#define _DEFAULT_SOURCE /* fork and MAP_ANONYMOUS, also with -std=c99 */
+#endif
+#include <math.h>
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -48,6 +52,14 @@ int ss_mode(int contact, int chosen);
 void ss_contact_result(int contact, int mode, int next, double gap, double f_n, double f_t, double limit, double slip);
 void ss_displacement(int node, double x, double y);
 
+/* The same in space, for all nodes, surfaces and contacts. The faces of a surface have equally many corners, listed face by face. Friction
+   and slip have components along t and n x t; `limit` is the radius of the friction cone. Without ss_frame n is z and t is x. */
+int ss_node_3d(double x, double y, double z);
+void ss_surface_3d(const char *name, const int *corners, int faces, int corners_per_face, int rigid);
+void ss_frame(int contact, const double *normal, const double *tangent);
+void ss_contact_result_3d(int contact, int mode, int next, double gap, double f_n, const double *f_t, double limit, const double *slip);
+void ss_displacement_3d(int node, double x, double y, double z);
+
 /* Reports the iteration, and returns when the debugger asks for the next one. `ended` is the level that ended with it: "iteration",
    "equilibrium" (a major iteration), "increment", "cut", "failure" or "done"; `residual` is relative. */
 void ss_pause(const char *ended, double load, double residual, double tolerance);
@@ -62,36 +74,36 @@ void ss_end(void);
 
 #ifdef SS_IMPLEMENTATION
 #undef SS_IMPLEMENTATION
-#ifndef _DEFAULT_SOURCE
-#define _DEFAULT_SOURCE
-#endif
 #include <fcntl.h>
-#include <math.h>
-#include <signal.h>
+#include <poll.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #ifndef SS_STATES
 #define SS_STATES 200
 #endif
+#define SS_LOOK 100 /* milliseconds between two looks of a saved state at the others */
+#define SS_LEFT 90  /* exit status of a copy that left the run to another one */
 
 static const char *const ss_modes[] = {"free", "sliding", "fixed"};
 
 struct ss_text { char *letters; size_t length, room; };
 
-struct ss_found { int mode, next; double gap, f_n, f_t, limit, slip; };
+struct ss_found { int mode, next; double gap, f_n, f_t[2], limit, slip[2], frame[6]; int has_frame; };
 
 static struct {
-    int in, out, nodes, contacts, over;
+    int in, out, nodes, contacts, in_space;
+    int over;                     /* 1: done, 2: after ss_end */
     struct ss_text node_list, line_list, surface_list, contact_list, scene, hello, state;
     struct ss_found *found;
     int *held, *once;             /* -1: the solver's own choice */
     char *is_once;                /* whether the mode of this solve was forced once */
-    double (*moved)[2];
+    double (*moved)[3];
     int increment, attempt, major, minor;
     int *saved;                   /* number of saved states, shared by all copies */
     int wake[SS_STATES][2];       /* a pipe for each saved state, opened before the first so that all copies know all of them */
@@ -119,6 +131,21 @@ static void ss_number(struct ss_text *text, const char *key, double value) {
     else ss_add(text, ",\"%s\":null", key);
 }
 
+/* The first `count` numbers of a list. */
+static void ss_numbers(struct ss_text *text, const double *values, int count) {
+    int k;
+    for (k = 0; k < count; k++) ss_add(text, "%s%.17g", k ? "," : "[", values[k]);
+    ss_add(text, "]");
+}
+
+/* A number in the plane, a pair in space. */
+static void ss_tangential(struct ss_text *text, const char *key, const double *values) {
+    if (!ss.in_space) { ss_number(text, key, values[0]); return; }
+    ss_add(text, ",\"%s\":", key);
+    if (isfinite(values[0]) && isfinite(values[1])) ss_numbers(text, values, 2);
+    else ss_add(text, "null");
+}
+
 /* Text in quotes. */
 static void ss_quoted(struct ss_text *text, const char *words) {
     ss_add(text, "\"");
@@ -137,20 +164,51 @@ static void *ss_grown(void *list, int count, size_t size) {
     return grown;
 }
 
+int ss_node_3d(double x, double y, double z) {
+    const double at[3] = {x, y, z};
+    ss.in_space = 1;
+    ss.moved = (double(*)[3])ss_grown(ss.moved, ss.nodes, sizeof *ss.moved);
+    ss_add(&ss.node_list, "%s{\"at\":", ss.nodes ? "," : "");
+    ss_numbers(&ss.node_list, at, 3);
+    ss_add(&ss.node_list, "}");
+    return ss.nodes++;
+}
+
 int ss_node(double x, double y) {
-    ss.moved = (double(*)[2])ss_grown(ss.moved, ss.nodes, sizeof *ss.moved);
+    ss.moved = (double(*)[3])ss_grown(ss.moved, ss.nodes, sizeof *ss.moved);
     ss_add(&ss.node_list, "%s{\"at\":[%.17g,%.17g]}", ss.nodes ? "," : "", x, y);
     return ss.nodes++;
 }
 
 void ss_line(int from, int to) { ss_add(&ss.line_list, "%s[%d,%d]", ss.line_list.length ? "," : "", from, to); }
 
-void ss_surface(const char *name, const int *nodes, int count, int rigid) {
+static void ss_indices(const int *nodes, int count) {
     int k;
+    ss_add(&ss.surface_list, "[");
+    for (k = 0; k < count; k++) ss_add(&ss.surface_list, "%s%d", k ? "," : "", nodes[k]);
+    ss_add(&ss.surface_list, "]");
+}
+
+static void ss_surface_head(const char *name, int rigid) {
     ss_add(&ss.surface_list, "%s{\"name\":", ss.surface_list.length ? "," : "");
     ss_quoted(&ss.surface_list, name);
-    ss_add(&ss.surface_list, ",\"rigid\":%s,\"nodes\":[", rigid ? "true" : "false");
-    for (k = 0; k < count; k++) ss_add(&ss.surface_list, "%s%d", k ? "," : "", nodes[k]);
+    ss_add(&ss.surface_list, ",\"rigid\":%s,", rigid ? "true" : "false");
+}
+
+void ss_surface(const char *name, const int *nodes, int count, int rigid) {
+    ss_surface_head(name, rigid);
+    ss_add(&ss.surface_list, "\"nodes\":");
+    ss_indices(nodes, count);
+    ss_add(&ss.surface_list, "}");
+}
+
+void ss_surface_3d(const char *name, const int *corners, int faces, int corners_per_face, int rigid) {
+    int k;
+    ss_surface_head(name, rigid);
+    for (k = 0; k < faces; k++) {
+        ss_add(&ss.surface_list, k ? "," : "\"faces\":[");
+        ss_indices(corners + k * corners_per_face, corners_per_face);
+    }
     ss_add(&ss.surface_list, "]}");
 }
 
@@ -191,15 +249,44 @@ static int ss_read(char *line, int room) {
 static void ss_quit(void) {
     int k;
     for (k = 0; ss.saved && k < *ss.saved; k++) if (write(ss.wake[k][1], "q", 1) < 0) break;
-    _exit(0);
+    _exit(ss.saved && *ss.saved ? SS_LEFT : 0);
 }
+
+#ifndef SS_NO_FORK
+/* Waits as a saved state, and returns in the copy that continues from it. Ends with the debugger, and reports copies that died. */
+static void ss_wait(int token) {
+    struct pollfd ends[2];
+    char word = 0, answer[128];
+    int status;
+    for (;;) {
+        memset(ends, 0, sizeof ends);
+        ends[0].fd = ss.wake[token][0];
+        ends[0].events = POLLIN;
+        ends[1].fd = ss.in; /* POLLHUP needs no request. */
+        poll(ends, 2, SS_LOOK);
+        while (waitpid(-1, &status, WNOHANG) > 0) {
+            if (WIFEXITED(status) && WEXITSTATUS(status) == SS_LEFT) continue;
+            snprintf(answer, sizeof answer, "{\"type\":\"bye\",\"reason\":\"its process ended: %s %d\"}\n",
+                     WIFSIGNALED(status) ? "signal" : "exit status", WIFSIGNALED(status) ? WTERMSIG(status) : WEXITSTATUS(status));
+            ss_say(answer);
+            ss_quit();
+        }
+        if (ends[0].revents & POLLIN && read(ends[0].fd, &word, 1) == 1 && word == 'r') {
+            pid_t copy = fork();
+            if (copy == 0) { ss_say("{\"type\":\"ok\"}\n"); return; }
+            if (copy < 0) { ss_say("{\"type\":\"bye\",\"reason\":\"fork failed\"}\n"); ss_quit(); }
+        }
+        if (word == 'q' || ends[1].revents) _exit(token ? SS_LEFT : 0);
+    }
+}
+#endif
 
 /* Saves the state: this process waits as the saved state, and its copy continues. */
 static void ss_save(void) {
 #ifdef SS_NO_FORK
     ss_say("{\"type\":\"refused\",\"reason\":\"no states are saved\"}\n");
 #else
-    char answer[64], word;
+    char answer[64];
     int token = *ss.saved;
     pid_t copy;
     if (token >= SS_STATES) { ss_say("{\"type\":\"refused\",\"reason\":\"too many saved states\"}\n"); return; }
@@ -211,9 +298,7 @@ static void ss_save(void) {
         ss_say(answer);
         return;
     }
-    while (read(ss.wake[token][0], &word, 1) == 1 && word == 'r')
-        if (fork() == 0) { ss_say("{\"type\":\"ok\"}\n"); return; }
-    _exit(0);
+    ss_wait(token);
 #endif
 }
 
@@ -231,7 +316,7 @@ static int ss_integer(const char *line, const char *key) {
 static void ss_restore(const char *line) {
     int number = ss_integer(line, "\"token\":");
     if (!ss.saved || number < 0 || number >= *ss.saved) { ss_say("{\"type\":\"refused\",\"reason\":\"no such state\"}\n"); return; }
-    if (write(ss.wake[number][1], "r", 1) == 1) _exit(0);
+    if (write(ss.wake[number][1], "r", 1) == 1) _exit(SS_LEFT);
 }
 
 static void ss_force(const char *line, int releases) {
@@ -244,6 +329,7 @@ static void ss_force(const char *line, int releases) {
     }
     ss.held[c] = !releases && strstr(line, "\"hold\":true") ? forced : -1;
     ss.once[c] = releases || ss.held[c] >= 0 ? -1 : forced;
+    if (ss.over == 1) ss.over = 0;
     ss_say("{\"type\":\"ok\"}\n");
 }
 
@@ -277,22 +363,21 @@ void ss_begin(const char *title, const char *name, const char *version) {
     dup2(nothing, 0);
     dup2(2, 1);
     close(nothing);
-    signal(SIGCHLD, SIG_IGN);
     ss.increment = ss.attempt = ss.major = ss.minor = 1;
 #ifndef SS_NO_FORK
     ss.saved = (int *)mmap(NULL, sizeof *ss.saved, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     if (ss.saved == MAP_FAILED) ss.saved = NULL;
     for (k = 0; ss.saved && k < SS_STATES; k++) if (pipe(ss.wake[k])) ss.saved = NULL;
 #endif
-    ss_add(&ss.hello, "{\"type\":\"hello\",\"protocol\":1,\"name\":");
+    ss_add(&ss.hello, "{\"type\":\"hello\",\"protocol\":%d,\"protocols\":[1,2],\"name\":", ss.in_space ? 2 : 1);
     ss_quoted(&ss.hello, name);
     ss_add(&ss.hello, ",\"version\":");
     ss_quoted(&ss.hello, version);
     ss_add(&ss.hello, ",\"abilities\":{\"force\":true,\"hold\":true,\"restore\":\"%s\"}}\n", ss.saved ? "any" : "none");
     ss_add(&ss.scene, "{\"type\":\"scene\",\"title\":");
     ss_quoted(&ss.scene, title);
-    ss_add(&ss.scene, ",\"nodes\":[%s],\"lines\":[%s],\"surfaces\":[%s],\"contacts\":[%s]}\n",
-           ss.node_list.letters ? ss.node_list.letters : "", ss.line_list.letters ? ss.line_list.letters : "",
+    ss_add(&ss.scene, ",\"dimension\":%d,\"nodes\":[%s],\"lines\":[%s],\"surfaces\":[%s],\"contacts\":[%s]}\n",
+           ss.in_space ? 3 : 2, ss.node_list.letters ? ss.node_list.letters : "", ss.line_list.letters ? ss.line_list.letters : "",
            ss.surface_list.letters ? ss.surface_list.letters : "", ss.contact_list.letters ? ss.contact_list.letters : "");
     ss_answer();
 }
@@ -305,13 +390,34 @@ int ss_mode(int contact, int chosen) {
 }
 
 void ss_contact_result(int contact, int mode, int next, double gap, double f_n, double f_t, double limit, double slip) {
-    struct ss_found found = {mode, next, gap, f_n, f_t, limit, slip};
-    ss.found[contact] = found;
+    const double f[2] = {f_t, 0}, s[2] = {slip, 0};
+    ss_contact_result_3d(contact, mode, next, gap, f_n, f, limit, s);
 }
 
-void ss_displacement(int node, double x, double y) {
+void ss_contact_result_3d(int contact, int mode, int next, double gap, double f_n, const double *f_t, double limit, const double *slip) {
+    struct ss_found *found = &ss.found[contact];
+    found->mode = mode;
+    found->next = next;
+    found->gap = gap;
+    found->f_n = f_n;
+    found->limit = limit;
+    memcpy(found->f_t, f_t, sizeof found->f_t);
+    memcpy(found->slip, slip, sizeof found->slip);
+}
+
+void ss_frame(int contact, const double *normal, const double *tangent) {
+    struct ss_found *found = &ss.found[contact];
+    memcpy(found->frame, normal, 3 * sizeof *normal);
+    memcpy(found->frame + 3, tangent, 3 * sizeof *tangent);
+    found->has_frame = 1;
+}
+
+void ss_displacement(int node, double x, double y) { ss_displacement_3d(node, x, y, 0); }
+
+void ss_displacement_3d(int node, double x, double y, double z) {
     ss.moved[node][0] = x;
     ss.moved[node][1] = y;
+    ss.moved[node][2] = z;
 }
 
 void ss_pause(const char *ended, double load, double residual, double tolerance) {
@@ -334,13 +440,22 @@ void ss_pause(const char *ended, double load, double residual, double tolerance)
         else if (ss.is_once[c]) ss_add(state, ",\"forced\":\"once\"");
         ss_number(state, "gap", found->gap);
         ss_number(state, "f_n", found->f_n);
-        ss_number(state, "f_t", found->f_t);
+        ss_tangential(state, "f_t", found->f_t);
         ss_number(state, "limit", found->limit);
-        ss_number(state, "slip", found->slip);
+        ss_tangential(state, "slip", found->slip);
+        if (found->has_frame) {
+            ss_add(state, ",\"normal\":");
+            ss_numbers(state, found->frame, 3);
+            ss_add(state, ",\"tangent\":");
+            ss_numbers(state, found->frame + 3, 3);
+        }
         ss_add(state, "}");
     }
     ss_add(state, "],\"displacements\":[");
-    for (k = 0; k < ss.nodes; k++) ss_add(state, "%s[%.17g,%.17g]", k ? "," : "", ss.moved[k][0], ss.moved[k][1]);
+    for (k = 0; k < ss.nodes; k++) {
+        if (k) ss_add(state, ",");
+        ss_numbers(state, ss.moved[k], ss.in_space ? 3 : 2);
+    }
     ss_add(state, "]}\n");
     ss_send(state->letters, state->length);
     ss.over = !strcmp(ended, "done");
@@ -353,7 +468,7 @@ void ss_pause(const char *ended, double load, double residual, double tolerance)
 }
 
 void ss_end(void) {
-    ss.over = 1;
+    ss.over = 2;
     ss_answer();
 }
 #endif

@@ -31,6 +31,7 @@ import json
 import mmap
 import os
 import queue
+import select
 import signal
 import socket
 import sys
@@ -222,8 +223,11 @@ class Loops:
 
     def end(self) -> None:
         """Answer until the debugger leaves."""
-        self.session.course.over = True
-        self.answer()
+        assert _line is not None
+        while True:
+            self.session.course.over = True
+            self.answer()
+            _line.say(_text({"type": "refused", "reason": "the history is complete"}))
 
     def answer(self) -> None:
         """Answer requests until the next step."""
@@ -497,10 +501,11 @@ class _Forks(_Session):
     """A session whose saved states are copies of the process, which wait at a pipe."""
 
     MOST = 200
+    LOOK = 100  # Milliseconds between two looks of a saved state at the others.
+    LEFT = 90  # Exit status of a copy that left the run to another one.
 
     def __init__(self, solver: Solver) -> None:
         super().__init__(solver)
-        signal.signal(signal.SIGCHLD, signal.SIG_IGN)
         self.count = mmap.mmap(-1, 1)  # Shared by all copies.
         # Opened before the first copy, so that all copies know all of them.
         self.wake = [os.pipe() for _ in range(self.MOST)]
@@ -515,21 +520,51 @@ class _Forks(_Session):
         if os.fork() == 0:
             self.count[0] = token + 1
             return {"type": "saved", "token": token}
-        while os.read(self.wake[token][0], 1) == b"r":
-            if os.fork() == 0:
-                return {"type": "ok"}
-        os._exit(0)
+        self.wait(token)
+        return {"type": "ok"}
+
+    def wait(self, token: int) -> None:
+        """Wait as a saved state, and return in the copy that continues from it. Ends with the debugger, and reports copies that died."""
+        assert _line is not None
+        ends, wake = select.poll(), self.wake[token][0]
+        ends.register(wake, select.POLLIN)
+        ends.register(_line.source, getattr(select, "POLLRDHUP", 0))
+        word = b""
+        while word != b"q":
+            ready = dict(ends.poll(self.LOOK))
+            while ended := self.ended():
+                _line.say(_text({"type": "bye", "reason": f"its process ended: {ended}"}))
+                self.leave()
+            if wake in ready:
+                word = os.read(wake, 1)
+                if word == b"r" and os.fork() == 0:
+                    return
+            elif ready:
+                break
+        os._exit(self.LEFT if token else 0)
+
+    def ended(self) -> str:
+        """How a copy ended that did not leave the run to another one; empty without one."""
+        try:
+            while (found := os.waitpid(-1, os.WNOHANG))[0]:
+                code = os.waitstatus_to_exitcode(found[1])
+                if code != self.LEFT:
+                    return f"signal {-code}" if code < 0 else f"exit status {code}"
+        except ChildProcessError:
+            pass
+        return ""
 
     def restore(self, ask: Message) -> Message:
         token: Any = ask.get("token")
         if token not in range(self.count[0]):
             raise Refused(f"no saved state {token!r}")
         os.write(self.wake[token][1], b"r")
-        os._exit(0)
+        os._exit(self.LEFT)
 
     def leave(self) -> None:
         for token in range(self.count[0]):
             os.write(self.wake[token][1], b"q")
+        os._exit(self.LEFT if self.count[0] else 0)
 
 
 def _request(line: bytes) -> Message:

@@ -479,7 +479,13 @@ fn cause_words<'a>(
 ) -> String {
     let members: Vec<&str> = (0..diagnosis.problem.nodes.len()).map(name).collect();
     let nodes = list(&members);
+    let lags = diagnosis
+        .ways
+        .contains(&(FrozenChange::ConsistentLimit, true));
     match &diagnosis.cause {
+        Cause::NoWayToSliding(_) | Cause::Several | Cause::Passed if lags => format!(
+            "T_max lags by one iteration; with a consistent T_max, Table 2 finds a consistent combination of modes of {nodes}"
+        ),
         Cause::NoAnswer if left_out => {
             format!("no modes of {nodes} are consistent with all other nodes frozen")
         }
@@ -682,17 +688,10 @@ pub fn condition_words(condition: Condition) -> &'static str {
 }
 
 fn way_words(way: FrozenChange, settles: bool) -> String {
-    let ends = if settles {
-        "settles"
-    } else {
-        "does not settle"
-    };
+    let ends = ["does not settle", "settles"][usize::from(settles)];
     match way {
-        FrozenChange::Answer(number) => {
-            format!(
-                "tried: starting from consistent state {}: {ends}",
-                number + 1
-            )
+        FrozenChange::Answer(k) => {
+            format!("tried: starting from consistent state {}: {ends}", k + 1)
         }
         FrozenChange::ConsistentLimit => format!("tried: settings.t_max=consistent: {ends}"),
         FrozenChange::OtherSlip => format!("tried: settings.slip set to its other value: {ends}"),

@@ -25,6 +25,8 @@ use super::report::sound;
 use super::rigid_motion::loose;
 use super::strain::MaterialCause;
 use super::try_list::{self, TryLine, TryOutcome, helps};
+use stickslip_core::interface::census::MOST;
+use stickslip_core::interface::method::NotFound;
 use stickslip_core::linear::norms::Norms;
 use stickslip_core::linear::singular::Singular;
 use stickslip_core::model::{Body, BodyKind, FinishedRun, InitialGaps, Model};
@@ -359,6 +361,9 @@ impl PageBuilder {
                     majors::flight_words(model, state, attempt)
                 });
             }
+            Failure::NotFound(NotFound::TooMany { nodes }) => self.facts.push(Fact::why(format!(
+                "strategy census tries all modes of at most {MOST} nodes, and {nodes} can touch"
+            ))),
             Failure::Cycle(_)
             | Failure::MinorLimit { .. }
             | Failure::NotFound(_)
@@ -521,6 +526,8 @@ impl PageBuilder {
             Some((_, true))
         );
         let place = usize::from(has_left_range).min(self.facts.len());
+        let unexplained = self.facts.iter_mut().filter(|f| f.text == self.found.head);
+        unexplained.for_each(|fact| fact.part = Part::Details);
         self.facts.insert(place, Fact::why(text));
     }
 

@@ -270,7 +270,11 @@ pub struct Scene {
     /// Number of coordinates: 2 or 3.
     #[serde(default = "plane", skip_serializing_if = "is_plane")]
     pub dimension: usize,
+    /// File with the mesh, whose nodes precede `nodes`; only in the message of a running solver.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mesh: Option<String>,
     /// Nodes for drawing, including those of the contacts.
+    #[serde(default)]
     pub nodes: Vec<NodeMessage>,
     /// Curves through nodes, as indices into `nodes`.
     #[serde(default)]

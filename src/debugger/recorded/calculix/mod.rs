@@ -84,6 +84,7 @@ pub fn open(run: CalculixRun, deck: Option<Deck>) -> Result<OpenedRun, String> {
             .map_or_else(String::new, |name| name.to_string_lossy().into_owned()),
         about: words::NO_MODES_IN_FULL.into(),
         dimension: 2,
+        mesh: None,
         nodes: slaves.clone().map(node).collect(),
         lines: Vec::new(),
         faces: Vec::new(),
