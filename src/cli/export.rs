@@ -7,6 +7,7 @@ use super::front;
 use super::interrupt::Interrupt;
 use super::place::{RunPosition, notify_missed, seek};
 use super::solver::{SolverArgs, session_of, step_to_end};
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use stickslip_core::model::Model;
@@ -70,9 +71,9 @@ pub struct Args {
     /// Draws only this part of a picture
     #[arg(long, value_name = "PART", value_parser = clap::builder::PossibleValuesParser::new(PicturePart::NAMES))]
     only: Option<String>,
-    /// Size of a picture in pixels
+    /// Size of a picture in pixels, or of a film in columns and rows
     #[arg(long, value_name = "WxH", value_parser = size)]
-    size: Option<(u32, u32)>,
+    size: Option<(u16, u16)>,
     /// Height of the small text of a picture, in pixels [default: in proportion to the size]
     #[arg(long, value_name = "PIXELS", value_parser = font)]
     font: Option<f64>,
@@ -110,7 +111,6 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     }
     let of_pictures = [
         ("--only", args.only.is_some()),
-        ("--size", args.size.is_some()),
         ("--font", args.font.is_some()),
         ("--node", args.node.is_some()),
         ("--monitor", args.monitor.is_some()),
@@ -120,6 +120,16 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         return Err(usage(format!(
             "{option} is for pictures only: -o FILE.svg or FILE.png"
         )));
+    }
+    let fits = |range: RangeInclusive<u16>| {
+        args.size
+            .is_none_or(|(w, h)| range.contains(&w) && range.contains(&h))
+    };
+    match kind.extension {
+        "svg" | "png" if fits(100..=8000) => {}
+        "cast" if fits(10..=400) => {}
+        _ if args.size.is_none() => {}
+        _ => return Err(usage("--size: a picture has 100 to 8000 pixels per side, a film (.cast) 10 to 400 columns and rows".into())),
     }
     match kind.extension {
         "svg" | "png" => pen::ready().map_err(|e| usage(e.to_string()))?,
@@ -205,13 +215,10 @@ fn reported(args: &Args, interrupt: &Interrupt) -> Result<Exit, Error> {
 }
 
 /// Reads `1920x1080`.
-fn size(text: &str) -> Result<(u32, u32), String> {
-    let side = |text: &str| text.parse().ok().filter(|side| (100..=8000).contains(side));
-    let sides = text.split_once('x').map(|(w, h)| (side(w), side(h)));
-    match sides {
-        Some((Some(width), Some(height))) => Ok((width, height)),
-        _ => Err("a size has the form 1920x1080, with 100 to 8000 pixels per side".into()),
-    }
+pub fn size(text: &str) -> Result<(u16, u16), String> {
+    let sides = text.split_once('x');
+    let sides = sides.and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
+    sides.ok_or_else(|| "a size has the form 120x40".into())
 }
 
 /// Reads the height of a text.
@@ -239,7 +246,7 @@ fn picture(args: &Args, model: &Model) -> Result<PictureRequest, Error> {
     let monitors = model.monitors.iter().map(|monitor| monitor.name.as_str());
     Ok(PictureRequest {
         only: args.only.as_deref().and_then(PicturePart::from_word),
-        size: args.size,
+        size: args.size.map(|(w, h)| (w.into(), h.into())),
         font: args.font,
         node: find("slave node", &args.node, slaves.collect())?,
         monitor: find("monitor", &args.monitor, monitors.collect())?,
@@ -316,7 +323,7 @@ fn film(args: &Args) -> Result<Vec<u8>, Error> {
     scene_only(args, "a journal is replayed as recorded")?;
     let record = Record::read(Path::new(args.input()))?;
     let session = session_of(&record, &args.solver)?;
-    Ok(front::film(&record, session)?.into_bytes())
+    Ok(front::film(&record, session, args.size)?.into_bytes())
 }
 
 /// Rejects options that only apply to scenes.

@@ -34,8 +34,9 @@ pub fn lesson(lesson: Lesson, step: Option<usize>) -> Result<(), Error> {
 }
 
 /// Converts a journal to a film.
-pub fn film(record: &Record, session: Session) -> Result<String, Error> {
-    Ok(tui::cast::film(record, session)?)
+pub fn film(record: &Record, session: Session, size: Option<(u16, u16)>) -> Result<String, Error> {
+    let size = size.unwrap_or(tui::cast::SIZE);
+    Ok(tui::cast::film(record, session, size)?)
 }
 
 /// A screen as PNG, in each of these colours.

@@ -127,7 +127,7 @@ fn list() -> Result<String, Error> {
         if let Some(column @ 1..) = column {
             line += &(shown::padded(&done(lesson), column) + "  ");
         }
-        format!("{line}{}: {}\n", lesson.title, lesson.about)
+        format!("{line}{}\n", lesson.title)
     };
     Ok(lessons.iter().enumerate().map(line).collect())
 }

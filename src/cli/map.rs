@@ -215,10 +215,10 @@ fn map_lines(map: &Map) -> Vec<String> {
         lines.extend(aligned(&table, panel.columns.len() + 1));
     }
     lines.push(
-        "\n✓C converged   ≠W wrong branch   ↺ cycle and its period   ↗D diverged   ∅N reported unsolvable\n\
-         ✗ failed: m minor limit, M major limit, s singular, j jammed, n search incomplete"
+        "\n✓C converged   ≠W wrong branch   ↺ cycle and its period   ↗D diverged   ∅N reported unsolvable"
             .to_owned(),
     );
+    lines.extend(map.signs());
     lines.extend(map.origin());
     lines
 }

@@ -9,7 +9,7 @@ use super::solver::SolverArgs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use stickslip_core::words::counted;
-use stickslip_debugger::record::differences::{Difference, Differences, compare};
+use stickslip_debugger::record::differences::{Difference, Differences, TOLERANCE, compare_within};
 use stickslip_debugger::record::snapshot::{Snapshot, SnapshotError};
 use stickslip_platform::files::finish_all;
 
@@ -21,6 +21,9 @@ pub struct Args {
     /// Snapshots
     #[arg(required = true, value_name = "SNAPSHOT")]
     files: Vec<PathBuf>,
+    /// Numbers may differ by this part of their scale; all else must be equal
+    #[arg(long, value_name = "PART", default_value_t = TOLERANCE)]
+    tolerance: f64,
     #[command(flatten)]
     solver: SolverArgs,
     #[command(flatten)]
@@ -67,7 +70,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     let (mut records, mut cases) = (Vec::new(), Vec::new());
     for file in &args.files {
         let began = Instant::now();
-        let replayed = one(file, &args.solver)?;
+        let replayed = one(file, args)?;
         let seconds = began.elapsed().as_secs_f64();
         print(file, &replayed, says)?;
         let this = replayed.exit();
@@ -113,7 +116,8 @@ fn write(
     Ok(finish_all(files)?)
 }
 
-fn one(file: &Path, solver: &SolverArgs) -> Result<ReplayResult, Error> {
+fn one(file: &Path, args: &Args) -> Result<ReplayResult, Error> {
+    let solver = &args.solver;
     let recorded = match Snapshot::read(file) {
         Ok(recorded) => Box::new(recorded),
         Err(error) => {
@@ -131,7 +135,7 @@ fn one(file: &Path, solver: &SolverArgs) -> Result<ReplayResult, Error> {
     Ok(match replayed {
         Ok(found) => ReplayResult::Compared {
             minors: found.steps,
-            differences: compare(&recorded, &found),
+            differences: compare_within(&recorded, &found, args.tolerance),
             recorded,
         },
         Err(error @ SnapshotError::Replay(_)) => {

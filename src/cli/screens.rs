@@ -3,6 +3,7 @@
 use super::base::{Error, Exit, notify, say, usage};
 use super::front::{self, MAIN_SCREENS, MainScreen, SIZES};
 use std::path::PathBuf;
+use stickslip_core::words::counted;
 use stickslip_debugger::action::Colours;
 use stickslip_platform::files;
 use stickslip_study::pen;
@@ -47,7 +48,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         or_all(&args.size, &SIZES),
         or_all(&chosen, &[Colours::Dark, Colours::Light, Colours::None]),
     );
-    let mut count = 0;
+    let mut count = 0u32;
     let mut draw = |screen: &MainScreen<'_>| {
         for &(width, height) in sizes {
             let drawn = front::screenshots(screen, (width, height), colours)?;
@@ -69,7 +70,11 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         (Some(_), _) => return Err(usage!("--keys needs one SCENE")),
         (None, names) => named(names)?.into_iter().try_for_each(draw)?,
     }
-    notify(&format!("wrote {count} pictures to {}", folder.display()));
+    notify(&format!(
+        "wrote {} to {}",
+        counted(count, "picture"),
+        folder.display()
+    ));
     Ok(Exit::Good)
 }
 
@@ -104,10 +109,9 @@ fn listed() -> String {
 
 /// Reads `120x40`.
 fn size(text: &str) -> Result<(u16, u16), String> {
-    let side = |text: &str| text.parse().ok().filter(|side| (10..=400).contains(side));
-    let sides = text.split_once('x').map(|(w, h)| (side(w), side(h)));
-    match sides {
-        Some((Some(width), Some(height))) => Ok((width, height)),
-        _ => Err("a size has the form 120x40, with 10 to 400 columns and rows".into()),
+    let (width, height) = super::export::size(text)?;
+    match [width, height].iter().all(|side| (10..=400).contains(side)) {
+        true => Ok((width, height)),
+        false => Err("a screen has 10 to 400 columns and rows".into()),
     }
 }

@@ -27,10 +27,16 @@ pub fn did_you_mean_file(missing: &str) -> String {
     did_you_mean(missing, paths.iter().map(String::as_str))
 }
 
-/// The candidate with the smallest edit distance, if that is at most a third of the differing part.
+/// The candidate with the smallest edit distance, if that is at most a third of the differing part; otherwise the only candidate
+/// that begins with the word.
 ///
 /// The common start and end are ignored, so `settings.foo` is not close to `settings.slip`, and `wall.ron` not to `beam.ron`.
 pub fn nearest<'a>(wrong: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let candidates: Vec<&str> = candidates.into_iter().collect();
+    let mut begun = candidates
+        .iter()
+        .filter(|right| !wrong.is_empty() && right.starts_with(wrong));
+    let only = begun.next().filter(|_| begun.next().is_none()).copied();
     // Longer words are not typos, and the distance costs quadratic time.
     const LONGEST: usize = 64;
     let wrong: Vec<char> = wrong.chars().take(LONGEST + 1).collect();
@@ -54,6 +60,7 @@ pub fn nearest<'a>(wrong: &str, candidates: impl IntoIterator<Item = &'a str>) -
         .filter_map(|right| far(right).map(|far| (far, right)))
         .min_by_key(|(far, _)| *far)
         .map(|(_, right)| right)
+        .or(only)
 }
 
 /// Edit distance in which swapping two adjacent characters counts as one change.
@@ -92,6 +99,11 @@ mod tests {
         assert_eq!(nearest("wall.ron", ["beam.ron"]), None);
         assert_eq!(nearest("z", ["x"]), None);
         assert_eq!(nearest("", ["x"]), None);
+        assert_eq!(
+            nearest("osc-inc", ["osc-inclined", "osc-two6"]),
+            Some("osc-inclined")
+        );
+        assert_eq!(nearest("osc-", ["osc-inclined", "osc-two6"]), None);
         let chars = |text: &str| text.chars().collect::<Vec<_>>();
         assert_eq!(distance(&chars("abcd"), &chars("abdc")), 1);
         assert_eq!(distance(&[], &chars("abc")), 3);

@@ -17,7 +17,7 @@ use super::sweep::Sweep;
 use super::sweep_input::Input;
 use super::verdict::RunVerdict;
 use serde::{Deserialize, Serialize};
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 use std::fmt::Write;
 use std::sync::Arc;
 use stickslip_core::model::Model;
@@ -284,6 +284,20 @@ impl Map {
             }
         }
         panels
+    }
+
+    /// The letters of the failures in the map, and the mark of jumps.
+    pub fn signs(&self) -> Option<String> {
+        let cells = || self.cells.iter().flatten();
+        let failed = cells().filter_map(|cell| match cell.verdict {
+            RunVerdict::Failed(reason) => Some(format!("✗{} {reason}", reason.letter())),
+            _ => None,
+        });
+        let jumped = cells().filter(|cell| cell.ended.jumped > 0);
+        let signs = failed.chain(jumped.map(|_| "↯ jumped on the way".to_owned()));
+        let signs = signs.collect::<BTreeSet<_>>().into_iter();
+        let signs = signs.collect::<Vec<_>>().join("   ");
+        (!signs.is_empty()).then_some(signs)
     }
 
     /// Origin of the map, for footers.

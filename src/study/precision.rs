@@ -1,12 +1,12 @@
 //! Work-precision charts: the cost and the error of settings.
 //!
 //! A chart contains series of runs of one scene. The **error** of a run is the largest difference between a
-//! monitor and the reference, relative to the reference's largest value of that kind (length, rotation, force),
+//! monitor and the reference, relative to the largest value of that monitor in the reference,
 //! at those loads that the reference and all finished runs have in common; a failed run has no error. The
 //! **cost** of a run is the processor time of its thread, from the built scene to the end of the history (the
 //! median of some repetitions), its factorizations (with condensation one per major iteration, otherwise one
 //! per minor), and its minor iterations. The **front** consists of the finished runs that no other run beats in
-//! both error and cost; errors at round-off ([`ROUND_OFF`]) count as equal.
+//! both error and cost; differences below 2 % are ties, and errors at round-off ([`ROUND_OFF`]) count as equal.
 
 use super::chart_file::{Chart, Truth};
 use super::chart_runs::{PlannedChart, TimedRun, sweep};
@@ -24,6 +24,12 @@ use stickslip_core::model::Model;
 
 /// Errors below this are round-off: a few thousand times the machine precision.
 pub const ROUND_OFF: f64 = 4096.0 * f64::EPSILON;
+
+/// Costs and errors that differ by less than this part are ties.
+const TIE: f64 = 0.02;
+
+/// A monitor that stays below this part of another of its kind is measured by the other's scale.
+const FLAT: f64 = 1e-6;
 
 /// A work-precision chart of one scene.
 #[derive(Debug, Clone)]
@@ -314,11 +320,15 @@ fn compare(
         .iter()
         .filter_map(|name| Some((reference.monitors.iter().position(|own| own == name)?, name)))
         .collect();
-    let scale = |wanted: Option<MonitorKind>| {
-        let of_kind = columns.iter().filter(|(_, name)| kind(name) == wanted);
-        let values =
-            of_kind.flat_map(|(k, _)| reference.rows.iter().map(|row| row.values[*k].abs()));
+    let largest = |k: usize| {
+        let values = reference.rows.iter().map(|row| row.values[k].abs());
         values.fold(f64::MIN_POSITIVE, f64::max)
+    };
+    // A monitor that is only round-off next to another of its kind has no scale of its own.
+    let scale = |k: usize, name: &String| {
+        let of_kind = columns.iter().filter(|(_, own)| kind(own) == kind(name));
+        let most = of_kind.map(|(k, _)| largest(*k)).fold(0.0, f64::max);
+        largest(k).max(FLAT * most)
     };
     for (measured, curve) in all.iter_mut().zip(&curves) {
         let Some(curve) = curve.as_ref().filter(|_| !measured.point.reference) else {
@@ -332,7 +342,7 @@ fn compare(
             for (k, name) in &columns {
                 let place = curve.monitors.iter().position(|own| own == *name);
                 let value = place.map_or(f64::NAN, |place| own.values[place]);
-                let part = (value - row.values[*k]).abs() / scale(kind(name));
+                let part = (value - row.values[*k]).abs() / scale(*k, name);
                 error = if part.is_nan() {
                     f64::INFINITY
                 } else {
@@ -373,7 +383,9 @@ pub(super) fn mark_front(points: &mut [Point], cost: Cost) {
         .map(|point| Some((cost.of(point), point.error?.max(ROUND_OFF))))
         .collect();
     let beaten = |(x, y): (f64, f64)| {
-        let better = |&(a, b): &(f64, f64)| a <= x && b <= y && (a < x || b < y);
+        let less = |a: f64, b: f64| a * (1.0 + TIE) < b;
+        let better =
+            |&(a, b): &(f64, f64)| !less(x, a) && !less(y, b) && (less(a, x) || less(b, y));
         measured.iter().flatten().any(better)
     };
     for (point, own) in points.iter_mut().zip(&measured) {
@@ -477,7 +489,7 @@ fn origin(
     vec![
         format!("Scene: {}{set}", chart.scene),
         format!(
-            "Error: largest difference of {}, relative to the largest value, at {loads} loads common to all finished runs; reference: {}",
+            "Error: largest difference of {}, each relative to its largest value, at {loads} loads common to all finished runs; reference: {}",
             precision.monitors.join(", "),
             reference.source
         ),
@@ -521,12 +533,14 @@ mod tests {
             point(2.0, Some(1e-3)),
             point(3.0, Some(2e-3)), // worse than the previous one
             point(4.0, Some(1e-4)),
-            point(0.1, None),       // failed
-            point(4.0, Some(1e-4)), // equal in cost
+            point(0.1, None),           // failed
+            point(4.0, Some(1e-4)),     // equal in cost
+            point(4.05, Some(1.01e-4)), // a tie
+            point(4.1, Some(1e-4)),     // more expensive by more than 2 %
         ];
         mark_front(&mut points, Cost::Time);
         let front: Vec<bool> = points.iter().map(|p| p.front).collect();
-        assert_eq!(front, [true, true, false, true, false, true]);
+        assert_eq!(front, [true, true, false, true, false, true, true, false]);
     }
 
     #[test]

@@ -54,7 +54,7 @@ impl Reason {
             Reason::OverConstrained => 'j',
             Reason::Refused => 'r',
             Reason::NoAnswer | Reason::NotFound => 'n',
-            Reason::RoundOff => 'r',
+            Reason::RoundOff => 'a',
             Reason::NoRest => 'w',
             Reason::Jump => 'b',
             Reason::OffPath => 'p',

@@ -168,6 +168,7 @@ pub fn grid(map: &Map) -> Result<Sheet, PlotError> {
         draw_panel(&mut sheet, map, panel, left, cell)?;
     }
     legend(&mut sheet)?;
+    sheet.paragraph(&map.signs().into_iter().collect::<Vec<_>>(), SMALL, BLACK)?;
     sheet.paragraph(&map.origin(), SMALL, GREY)?;
     Ok(sheet)
 }

@@ -35,11 +35,9 @@ impl Canvas {
         let Some((from, to)) = clip(from, to, [0.0; 2], self.size()) else {
             return;
         };
-        let steps = (to[0] - from[0])
-            .abs()
-            .max((to[1] - from[1]).abs())
-            .ceil()
-            .max(1.0);
+        let length = (to[0] - from[0]).abs().max((to[1] - from[1]).abs());
+        // Steps of exactly one dot could skip one by round-off.
+        let steps = (length + 1e-6).ceil();
         for step in 0..=steps as usize {
             let part = step as f64 / steps;
             self.dot(mix(from, to, part), style);

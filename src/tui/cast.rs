@@ -17,7 +17,7 @@ use stickslip_debugger::record::story;
 use stickslip_debugger::session::Session;
 use stickslip_scene::shown;
 
-/// Columns and rows.
+/// Columns and rows, if none are given.
 pub const SIZE: (u16, u16) = (120, 36);
 /// Seconds per screen: a base, an amount per character of the message, and a maximum.
 const STAY: f64 = 1.5;
@@ -26,13 +26,13 @@ const LONGEST: f64 = 6.0;
 /// Seconds that the first screen is shown.
 const FIRST: f64 = 2.5;
 
-/// Replays a journal in `session`, which must be at its start, and returns the film.
+/// Replays a journal in `session`, which must be at its start, and returns the film, of `size` columns and rows.
 ///
 /// # Errors
 /// If the journal's scene is invalid, or the replay does not reach the same states.
-pub fn film(record: &Record, session: Session) -> Result<String, JournalError> {
+pub fn film(record: &Record, session: Session, size: (u16, u16)) -> Result<String, JournalError> {
     let model = record.scene()?.model;
-    let mut film = Film::new(&record.header.name);
+    let mut film = Film::new(&record.header.name, size);
     let see = &mut |session: &Session, entry: Option<&Entry>| film.show(session, &model, entry);
     let session = record.replay_in(session, see)?;
     film.end(&session);
@@ -47,13 +47,11 @@ struct Film {
 }
 
 impl Film {
-    fn new(title: &str) -> Film {
-        let area = Rect::new(0, 0, SIZE.0, SIZE.1);
+    fn new(title: &str, (width, height): (u16, u16)) -> Film {
+        let area = Rect::new(0, 0, width, height);
         let title = format!("stickslip {}", shown::cut(title, 80));
         let text = format!(
-            "{{\"version\": 2, \"width\": {}, \"height\": {}, \"title\": {}, \"env\": {{\"TERM\": \"xterm-256color\"}}}}\n",
-            SIZE.0,
-            SIZE.1,
+            "{{\"version\": 2, \"width\": {width}, \"height\": {height}, \"title\": {}, \"env\": {{\"TERM\": \"xterm-256color\"}}}}\n",
             quoted(&title)
         );
         Film {

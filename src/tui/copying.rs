@@ -81,6 +81,9 @@ fn selected_text(app: &App, view: &View) -> Result<NamedText, String> {
             let trial = trials
                 .get(at)
                 .ok_or("no remedy tried yet; press r to try all")?;
+            if let Some(entry) = trial.how.scene_entry() {
+                return Ok(("the entry for the scene".into(), entry));
+            }
             let mut cells = vec![trial.label.clone()];
             cells.extend(remedies::row(trial));
             Ok(("the remedy".into(), cells.join("\t")))

@@ -34,8 +34,8 @@ fn the_elastica_is_the_reference_of_problem_04_and_the_cheapest_mesh_is_named() 
     let output = ran(directory.path(), &arguments);
     let table = rows(&output);
     let errors: Vec<f64> = table.iter().map(|r| number(r, "error")).collect();
-    // As in `tests/physics/references.rs`, over both displacements and fewer loads.
-    let limits = [4e-4, 2e-4, 4e-5];
+    // As in `tests/physics/references.rs`, over fewer loads; u_y, which is small, on its own scale.
+    let limits = [1.1e-3, 2e-4, 4e-5];
     assert!(
         errors.iter().zip(limits).all(|(e, limit)| *e < limit),
         "{errors:?}"
@@ -132,7 +132,7 @@ fn a_chart_is_measured_by_any_monitor_contact_forces_included() {
     let errors: Vec<f64> = rows(&force).iter().map(|r| number(r, "error")).collect();
     assert!(errors.iter().all(|e| *e < 1e-8), "{errors:?}");
     assert!(
-        err(&force).contains("difference of contact_x, relative to"),
+        err(&force).contains("difference of contact_x, each relative to"),
         "{}",
         err(&force)
     );

@@ -371,7 +371,7 @@ fn a_part_of_a_picture_has_the_requested_size_and_options_of_pictures_are_refuse
         ),
         (
             &[OSC, "-o", "a.svg", "--size", "9x9"],
-            "a size has the form 1920x1080",
+            "a picture has 100 to 8000 pixels per side",
         ),
         (
             &[OSC, "-o", "a.svg", "--node", "tip"],

@@ -405,6 +405,10 @@ fn a_replay_names_what_differs_as_json_and_as_junit() {
         first["apart"].as_f64().unwrap(),
     );
     assert_eq!(99.0 - found.parse::<f64>().unwrap(), apart);
+    for (part, equal) in [("1", true), ("1e-3", false)] {
+        let replayed = ran(&["replay", "--tolerance", part, &changed]);
+        assert_eq!(replayed.status.success(), equal, "{}", out(&replayed));
+    }
     let text = out(&ran(&replay));
     let minors = &record["snapshots"][0]["minors"];
     assert!(

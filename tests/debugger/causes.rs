@@ -5,6 +5,7 @@ mod stored;
 
 use std::path::{Path, PathBuf};
 use stickslip::recorded::calculix::rules::{examine, shape::DeckShape};
+use stickslip::recorded::calculix::run::CalculixRun;
 use stickslip_exchange::inp::{self, Deck};
 use stickslip_exchange::mesh::CellKind;
 use stored::{opened, rows, run};
@@ -74,6 +75,39 @@ fn a_run_that_converged_has_no_cause_from_attempts_that_were_cut() {
     let run = run(&root(), "slider-soft");
     assert!(!run.switching.is_empty());
     assert!(run.findings.is_empty(), "{:?}", run.findings);
+    // Nor one from its deck, which `check` would warn about.
+    let path = root().join("slider-soft.inp");
+    let text = std::fs::read_to_string(path).unwrap();
+    let stiff = deck(&text.replace("\n1e7", "\n1e11"));
+    let shape = DeckShape::new(&stiff);
+    assert!(!examine(Some(&shape), None).is_empty());
+    assert!(examine(Some(&shape), Some(&run)).is_empty());
+}
+
+#[test]
+fn contacts_chatter_in_the_last_attempt_or_else_in_an_earlier_one() {
+    let mut run = CalculixRun::clone(&run(&root(), "two-blocks"));
+    let chatter = |run: &CalculixRun| {
+        let found = examine(None, Some(run));
+        let found = found.into_iter().find(|found| found.rule == "chattering");
+        found.map(|found| found.cause).unwrap()
+    };
+    let last = chatter(&run);
+    assert!(
+        last.contains("in the last attempt, up to 6 times in 2.1.3:"),
+        "{last}"
+    );
+    let attempts = run.files.attempts.len();
+    for found in &mut run.switching {
+        found.attempts.retain(|(attempt, _)| attempt + 1 < attempts);
+    }
+    let earlier = chatter(&run);
+    assert!(
+        earlier.contains(&format!(
+            "in one of {attempts} attempts, up to 6 times in 2.1.2:"
+        )),
+        "{earlier}"
+    );
 }
 
 #[test]

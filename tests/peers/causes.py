@@ -124,7 +124,7 @@ def main_cases():
     made = deck([([HOLD, LOAD], TIME), (["*BOUNDARY\nTOP, 1, 1, .3"], "1., 1., 0.9, 1.")])
     yield "cuts", "no room for cuts", made, "1, 1, 0.001, 1", swap(made, "1., 1., 0.9, 1.", "1, 1, 0.001, 1")
     made = deck([(["*BOUNDARY\nTOP, 1, 2, 0.\nFOOT, 3, 3, -0.5", LOAD], TIME)], foot=True)
-    yield "supported", "constrained slave nodes", made, "", swap(made, "*BOUNDARY\nTOP, 1, 2, 0.\nFOOT, 3, 3, -0.5", HOLD)
+    yield "supported", "constrained slave nodes", made, "** supports no other node", swap(made, "*BOUNDARY\nTOP, 1, 2, 0.\nFOOT, 3, 3, -0.5", HOLD + "\n** supports no other node")
 
 
 def plane_cases(folder):

@@ -2,9 +2,14 @@
 """What stickslip does with the contact decks of CalculiX' own tests (Debian: calculix-ccx-test): read and solved in the plane, read
 by the rules for 3-D decks, or refused and why. `tests/peers/decks.py` compares the solved ones with ccx.
 Usage: tests/peers/ccx_test.py STICKSLIP FOLDER (the folder of the decks: /usr/share/doc/calculix-ccx-test/examples/test)"""
-import collections, os, re, subprocess, sys
+import collections, gzip, os, re, shutil, subprocess, sys, tempfile
 
-program, folder = sys.argv[1:3]
+program, packed = sys.argv[1:3]
+folder = tempfile.mkdtemp()
+for name in os.listdir(packed):
+    opened = gzip.open if name.endswith(".gz") else open
+    with opened(os.path.join(packed, name), "rb") as source, open(os.path.join(folder, name.removesuffix(".gz")), "wb") as copy:
+        shutil.copyfileobj(source, copy)
 counts = collections.Counter()
 for name in sorted(os.listdir(folder)):
     if not name.endswith(".inp"):

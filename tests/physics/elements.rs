@@ -19,6 +19,7 @@ fn stresses(run: &Run) -> Vec<Vec<Option<[f64; 4]>>> {
         u: &state.u,
         before: &state.u,
         history: &state.start.history,
+        load_factor: state.load_factor,
     };
     nodal_stresses(run.stepper.model(), at)
 }

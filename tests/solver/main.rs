@@ -22,6 +22,8 @@ mod renewed;
 mod condensation;
 // Constant pressure across SURFACE TO SURFACE contacts of decks.
 mod deck_patches;
+// Thermal expansion in decks, free and restrained.
+mod expansion;
 // Bodies given by a matrix, endless floors, and what slave nodes bring along.
 mod interfaces;
 mod linear;

@@ -33,16 +33,20 @@ fn unquoted(text: &str) -> String {
 #[test]
 fn the_last_screen_of_a_film_is_that_of_the_session() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/journals");
-    for name in ["forced-and-turned.journal", "up-the-ladder.journal"] {
+    let journals = [
+        ("forced-and-turned.journal", SIZE),
+        ("up-the-ladder.journal", (80, 24)),
+    ];
+    for (name, size) in journals {
         let record = Record::read(&folder.join(name)).unwrap();
         let session = || Session::new(record.scene().unwrap());
-        let made = film(&record, session()).unwrap();
+        let made = film(&record, session(), size).unwrap();
         assert_eq!(
             made,
-            film(&record, session()).unwrap(),
+            film(&record, session(), size).unwrap(),
             "not the same bytes"
         );
-        let mut terminal = vt100::Parser::new(cells(SIZE.1), cells(SIZE.0), 0);
+        let mut terminal = vt100::Parser::new(cells(size.1), cells(size.0), 0);
         for line in made.lines().skip(1) {
             let (_, rest) = line.trim_end_matches(']').split_once(", ").unwrap();
             let (kind, text) = rest.split_once(", ").unwrap();
@@ -51,11 +55,11 @@ fn the_last_screen_of_a_film_is_that_of_the_session() {
                 terminal.process(unquoted(text).as_bytes());
             }
         }
-        let shown: Vec<String> = terminal.screen().rows(0, SIZE.0).collect();
+        let shown: Vec<String> = terminal.screen().rows(0, size.0).collect();
         let session = record.replay().unwrap();
         let mut app = App::new(Theme::colour(), Vec::new());
         app.say(record.entries.last().unwrap().1.said.as_str());
-        let wanted = screen::text(&app, Some(&View::new(&session)), SIZE.0, SIZE.1);
+        let wanted = screen::text(&app, Some(&View::new(&session)), size.0, size.1);
         for (row, wanted) in shown.iter().zip(wanted.lines()) {
             assert_eq!(row.trim_end(), wanted, "{name}");
         }

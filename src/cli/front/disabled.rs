@@ -24,7 +24,7 @@ pub fn lesson(_: Lesson, _: Option<usize>) -> Result<(), Error> {
     ready()
 }
 
-pub fn film(_: &Record, _: Session) -> Result<String, Error> {
+pub fn film(_: &Record, _: Session, _: Option<(u16, u16)>) -> Result<String, Error> {
     ready().map(|()| String::new())
 }
 

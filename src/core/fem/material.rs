@@ -31,6 +31,8 @@ pub struct Material {
     pub plane: Plane,
     /// Reference thickness.
     pub thickness: f64,
+    /// Pressure of a thermal expansion that is fully restrained; 0 without expansion. Only with law svk.
+    pub pressure: f64,
 }
 
 /// Response of a material to a strain.
@@ -65,6 +67,28 @@ impl Material {
             law: elastic.law,
             plane: elastic.plane,
             thickness: elastic.thickness,
+            pressure: 0.0,
+        }
+    }
+
+    /// The same with a thermal expansion: stresses belong to the strain minus `strain` in all directions.
+    pub fn expanded(elastic: &Elastic, strain: f64) -> Self {
+        let free = match elastic.plane {
+            Plane::Strain | Plane::Axisymmetric => 1.0 - 2.0 * elastic.poisson,
+            Plane::Stress => 1.0 - elastic.poisson,
+        };
+        Material {
+            pressure: elastic.young / free * strain,
+            ..Material::new(elastic)
+        }
+    }
+
+    /// The part of the stress due to an expansion of 1, as a material whose stiffness vanishes next to it.
+    pub fn expansion_only(elastic: &Elastic) -> Self {
+        Material {
+            lambda: 0.0,
+            mu: 1e-200,
+            ..Material::expanded(elastic, 1.0)
         }
     }
 
@@ -84,15 +108,15 @@ impl Material {
         let share = self.lambda / (self.lambda + 2.0 * mu);
         let (lambda, thickening) = match self.plane {
             Plane::Strain | Plane::Axisymmetric => (self.lambda, 0.0),
-            Plane::Stress => (2.0 * mu * share, -share * trace),
+            Plane::Stress => (2.0 * mu * share, self.pressure / (2.0 * mu) - share * trace),
         };
         #[cfg(mutants)]
         let lambda = crate::mutants::pick("plane-stress-as-plane-strain", lambda, self.lambda);
         let direct = lambda + 2.0 * mu;
         let tangent = Matrix3::new(direct, lambda, 0.0, lambda, direct, 0.0, 0.0, 0.0, mu);
         let stress = Vector3::new(
-            direct * strain.x + lambda * strain.y,
-            lambda * strain.x + direct * strain.y,
+            direct * strain.x + lambda * strain.y - self.pressure,
+            lambda * strain.x + direct * strain.y - self.pressure,
             mu * strain.z,
         );
         Response {
@@ -169,7 +193,7 @@ impl Material {
         let mut response = self.linear(strain);
         response.stress += Vector3::new(lambda * hoop, lambda * hoop, 0.0);
         let hoop = Hoop {
-            stress: direct * hoop + lambda * (strain.x + strain.y),
+            stress: direct * hoop + lambda * (strain.x + strain.y) - self.pressure,
             coupling: Vector3::new(lambda, lambda, 0.0),
             modulus: direct,
         };
@@ -208,7 +232,7 @@ impl Material {
     pub fn linear_across(&self, strain: &Vector3<f64>) -> f64 {
         match self.plane {
             Plane::Stress => 0.0,
-            _ => self.lambda * (strain.x + strain.y),
+            _ => self.lambda * (strain.x + strain.y) - self.pressure,
         }
     }
 

@@ -10,15 +10,35 @@
 //! and its exact derivative, which is not symmetric, is subtracted from the tangent (Bathe 2014, section 6.7; Schweizerhof and
 //! Ramm 1984). The integration rule is exact for it. The functions here compute the load, which is on the opposite side of the
 //! equilibrium equation from internal forces.
+//!
+//! A thermal expansion of a solid is such a load too: S = C : (E − ε I) is linear in ε, so that f = ε ∫ p F ∇N dV with p of
+//! [`Material::expanded`], computed by the elements themselves.
 
 use crate::elements::lagrange::{self, MAX_NODES};
+use crate::fem::continuum;
+use crate::fem::element::{Element, Previous};
+use crate::fem::material::Material;
 use crate::linalg::Pattern;
-use crate::model::{Dofs, Factor, Model, PressedFace};
+use crate::model::{BodyKind, Dofs, Factor, Model, PressedFace, Update};
 use std::f64::consts::TAU;
 
 /// All pressures of a scene, face by face.
 pub struct Pressures {
     faces: Vec<PressedElement>,
+    expanding: Vec<ExpandingElement>,
+}
+
+/// An element of a body that expands.
+struct ExpandingElement {
+    /// Has the negative load of an expansion of 1 as internal force.
+    element: Box<dyn Element>,
+    /// Whether its displacements are small, so that the load does not depend on them.
+    small: bool,
+    dofs: Vec<usize>,
+    /// As for a face; empty if the load is dead.
+    slots: Vec<Option<usize>>,
+    /// Index of its expansion in the model.
+    pressure: usize,
 }
 
 /// A face with its positions in the system.
@@ -57,30 +77,31 @@ impl Pressures {
         let faces = all.flat_map(|(k, pressure)| pressure.faces.iter().map(move |face| (k, face)));
         Pressures {
             faces: faces.map(of).collect(),
+            expanding: expanding(model),
         }
-    }
-
-    /// Whether there are no pressures.
-    pub fn is_empty(&self) -> bool {
-        self.faces.is_empty()
     }
 
     /// Entries `(row, column)` of the tangent, in equations; may contain duplicates.
     pub fn entries<'a>(&'a self, dofs: &'a Dofs) -> impl Iterator<Item = (usize, usize)> + 'a {
-        self.faces.iter().flat_map(move |face| {
-            let equations = || face.dofs.iter().filter_map(|&d| dofs.equation[d]);
+        let faces = self.faces.iter().map(|face| &face.dofs);
+        let following = self.expanding.iter().filter(|element| !element.small);
+        let all = faces.chain(following.map(|element| &element.dofs));
+        all.flat_map(move |own| {
+            let equations = || own.iter().filter_map(|&d| dofs.equation[d]);
             equations().flat_map(move |i| equations().map(move |j| (i, j)))
         })
     }
 
     /// Looks up every entry in a pattern that contains them all.
     pub fn bind(&mut self, dofs: &Dofs, pattern: &Pattern) {
-        for face in &mut self.faces {
-            face.slots.clear();
-            for &row in &face.dofs {
-                for &column in &face.dofs {
+        let faces = self.faces.iter_mut().map(|f| (&f.dofs, &mut f.slots));
+        let following = self.expanding.iter_mut().filter(|element| !element.small);
+        for (own, slots) in faces.chain(following.map(|e| (&e.dofs, &mut e.slots))) {
+            slots.clear();
+            for &row in own {
+                for &column in own {
                     let pair = dofs.equation[row].zip(dofs.equation[column]);
-                    face.slots.push(pair.and_then(|(i, j)| pattern.slot(i, j)));
+                    slots.push(pair.and_then(|(i, j)| pattern.slot(i, j)));
                 }
             }
         }
@@ -108,6 +129,14 @@ impl Pressures {
                 }
             }
         }
+        for element in &self.expanding {
+            let expansion = &model.pressures[element.pressure];
+            let size = expansion.value * factor(&expansion.scale);
+            let (force, _) = element.response(u);
+            for (&dof, part) in element.dofs.iter().zip(force) {
+                add(dof, -size * part);
+            }
+        }
     }
 
     /// Subtracts the derivative of the forces at displacements u from the tangent, and its product with `step` of the restrained
@@ -132,6 +161,63 @@ impl Pressures {
                 }
             });
         }
+        for element in self.expanding.iter().filter(|element| !element.small) {
+            let expansion = &model.pressures[element.pressure];
+            let size = expansion.value * expansion.scale.at(load_factor);
+            let (_, tangent) = element.response(u);
+            let entries = element.slots.iter().zip(tangent).enumerate();
+            for (k, (slot, value)) in entries {
+                let (row, column) = (k / element.dofs.len(), k % element.dofs.len());
+                if let Some(slot) = slot {
+                    values[*slot] += size * value;
+                } else if let Some(equation) = model.dofs.equation[element.dofs[row]] {
+                    coupling[equation] += size * value * step[element.dofs[column]];
+                }
+            }
+        }
+    }
+}
+
+/// The elements of all bodies that expand.
+fn expanding(model: &Model) -> Vec<ExpandingElement> {
+    let mut made = Vec::new();
+    for (k, pressure) in model.pressures.iter().enumerate() {
+        let body = pressure.expands.map(|body| &model.bodies[body].kind);
+        let Some(BodyKind::Solid(solid)) = body else {
+            continue;
+        };
+        for element in &solid.elements {
+            let elastic = &solid.materials[element.material];
+            let at: Vec<[f64; 2]> = element.nodes.iter().map(|&n| model.nodes[n].at).collect();
+            let first = element.nodes.iter().map(|&n| model.dofs.first[n]);
+            let formulation = continuum::formulation(element.kind);
+            let material = Material::expansion_only(elastic);
+            made.push(ExpandingElement {
+                element: formulation.element(&at, material, Update::Total),
+                small: elastic.update == Update::Small,
+                dofs: first.flat_map(|d| [d, d + 1]).collect(),
+                slots: Vec::new(),
+                pressure: k,
+            });
+        }
+    }
+    made
+}
+
+impl ExpandingElement {
+    /// Internal force and tangent for an expansion of 1, at displacements u of the scene.
+    fn response(&self, u: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let count = self.dofs.len();
+        let moved = |&dof: &usize| if self.small { 0.0 } else { u[dof] };
+        let own: Vec<f64> = self.dofs.iter().map(moved).collect();
+        let (mut force, mut tangent) = (vec![0.0; count], vec![0.0; count * count]);
+        let past = Previous {
+            u: &own,
+            history: &[],
+        };
+        self.element.add(&past, &own, &mut force, &mut tangent);
+        self.element.mirror(&mut tangent);
+        (force, tangent)
     }
 }
 
@@ -215,6 +301,7 @@ mod tests {
                 pressure: 0,
                 points: samples(m),
             }],
+            expanding: Vec::new(),
         }
     }
 
@@ -254,6 +341,57 @@ mod tests {
                         assert!(error.abs() < 1e-8, "{m} {thickness:?} {i} {j}: {error:e}");
                     }
                 }
+            }
+        }
+    }
+
+    #[test]
+    fn the_tangent_of_an_expansion_is_the_derivative_of_its_load() {
+        use crate::model::{Elastic, ElementKind, Law, Plane};
+        let at = [[2.0, 0.1], [3.1, 0.0], [3.3, 1.2], [1.9, 0.9]];
+        for plane in [Plane::Strain, Plane::Stress, Plane::Axisymmetric] {
+            let elastic = Elastic {
+                young: 100.0,
+                poisson: 0.3,
+                law: Law::Svk,
+                plane,
+                thickness: 0.7,
+                update: Update::Total,
+            };
+            let formulation = continuum::formulation(ElementKind::Quad4);
+            let material = Material::expansion_only(&elastic);
+            let whole = |u: &[f64], material: Material| {
+                let element = ExpandingElement {
+                    element: formulation.element(&at, material, Update::Total),
+                    small: false,
+                    dofs: (0..8).collect(),
+                    slots: Vec::new(),
+                    pressure: 0,
+                };
+                element.response(u)
+            };
+            let u: Vec<f64> = (0..8).map(|k| 0.05 * ((k * 7 % 5) as f64 - 2.0)).collect();
+            let (force, tangent) = whole(&u, material);
+            let (scale, h) = (tangent.iter().fold(0.0_f64, |m, k| m.max(k.abs())), 1e-5);
+            assert!(scale > 1.0);
+            for j in 0..8 {
+                let moved = |by: f64| {
+                    let mut u = u.clone();
+                    u[j] += by;
+                    whole(&u, material).0
+                };
+                let (plus, minus) = (moved(h), moved(-h));
+                for i in 0..8 {
+                    let error = (plus[i] - minus[i]) / (2.0 * h) - tangent[i * 8 + j];
+                    assert!(error.abs() < 1e-8 * scale, "{plane:?} {i} {j}: {error:e}");
+                }
+            }
+            // It is what the expansion changes in the whole element.
+            let (bare, warm) = (Material::new(&elastic), Material::expanded(&elastic, 0.01));
+            let (bare, warm) = (whole(&u, bare).0, whole(&u, warm).0);
+            for i in 0..8 {
+                let error = warm[i] - bare[i] - 0.01 * force[i];
+                assert!(error.abs() < 1e-12 * scale, "{plane:?} {i}: {error:e}");
             }
         }
     }

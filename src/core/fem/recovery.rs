@@ -25,6 +25,8 @@ pub struct Configuration<'a> {
     pub before: &'a [f64],
     /// History variables at that increment ([`super::assembly::history_len`] numbers).
     pub history: &'a [f64],
+    /// Load factor, on which thermal expansions depend.
+    pub load_factor: f64,
 }
 
 /// Stresses at the nodes of each body, in the order of [`Body::nodes`]; `None` if no adjacent solid element has a response, and
@@ -82,6 +84,10 @@ fn each_element(
         let BodyKind::Solid(solid) = &body.kind else {
             continue;
         };
+        let expansions = model.pressures.iter().filter(|p| p.expands == Some(b));
+        let expansion = expansions
+            .map(|p| p.value * p.scale.at(at.load_factor))
+            .sum();
         for element in &solid.elements {
             let elastic = &solid.materials[element.material];
             let places: Vec<[f64; 2]> = element.nodes.iter().map(|&n| model.nodes[n].at).collect();
@@ -96,7 +102,7 @@ fn each_element(
                 history: &at.history[remembered..remembered + count],
             };
             remembered += count;
-            let made_of = (Material::new(elastic), elastic.update);
+            let made_of = (Material::expanded(elastic, expansion), elastic.update);
             let states = continuum::formulation(element.kind).states(&places, made_of, &past, &u);
             let stress =
                 |s: Option<PointState>| s.map(|s| [s.cauchy.x, s.cauchy.y, s.across, s.cauchy.z]);

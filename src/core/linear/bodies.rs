@@ -279,7 +279,7 @@ impl Source for Bodies {
 
     fn aim(&mut self, at: &LinearisationPoint<'_>) -> bool {
         // A following pressure has a stiffness that depends on the load.
-        let dead = self.system.pressures.is_empty();
+        let dead = self.model.has_dead_loads();
         let holds =
             dead && at.accepted.history.is_empty() && !(self.system.dragged || at.drag.is_some());
         if holds {

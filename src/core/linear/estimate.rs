@@ -370,7 +370,7 @@ pub fn condensable(model: &Model) -> bool {
         .surfaces
         .iter()
         .all(|surface| surface.gives.is_empty());
-    plain && model.pressures.is_empty() && model.bodies.iter().all(symmetric)
+    plain && model.has_dead_loads() && model.bodies.iter().all(symmetric)
 }
 
 /// Formats a number of bytes.

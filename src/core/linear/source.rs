@@ -25,7 +25,7 @@ use std::sync::Arc;
 
 /// Estimated norm of the scaled inverse from which on the equations are suspected to be singular.
 pub(super) const SUSPICIOUS: f64 = 1e12;
-/// What a relative amount against a law may be at least.
+/// Lower bound of the tolerance for relative violations of a law.
 const TOLERANCE: f64 = 1e-8;
 
 /// The state about which a source linearises.

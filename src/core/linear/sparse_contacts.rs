@@ -31,7 +31,7 @@ pub fn sparse_contacts(model: &Model) -> Option<SparseContacts<'_>> {
     let Form::Compliance { first_force } = linear.form else {
         return None;
     };
-    let bare = model.pressures.is_empty()
+    let bare = model.has_dead_loads()
         && model.prescribed.is_empty()
         && model.finished.is_none()
         && model.control == Control::Load

@@ -206,7 +206,7 @@ fn is_symmetric(model: &Model) -> bool {
         BodyKind::Beam(_) | BodyKind::Solid(_) | BodyKind::Truss(_) => true,
         BodyKind::Linear(linear) => linear.is_symmetric(),
     };
-    model.pressures.is_empty() && model.bodies.iter().all(symmetric)
+    model.has_dead_loads() && model.bodies.iter().all(symmetric)
 }
 
 /// Marks the equations of bodies with length equations.

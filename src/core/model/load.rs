@@ -13,12 +13,15 @@ pub struct Load {
     pub scale: Factor,
 }
 
-/// A following pressure on faces of solids: force per current area, positive into the body.
+/// A following pressure on faces of solids: force per current area, positive into the body. Or the thermal expansion of a solid,
+/// whose nodal forces also follow the body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pressure {
     /// The faces.
     pub faces: Vec<PressedFace>,
-    /// Pressure (force per area) at factor 1; positive pushes into the body.
+    /// The body that expands; then there are no faces.
+    pub expands: Option<usize>,
+    /// Pressure (force per area) at factor 1; positive pushes into the body. Of an expansion the strain at factor 1.
     pub value: f64,
     /// Amplitude as a function of the load factor.
     pub scale: Factor,

@@ -55,7 +55,7 @@ pub struct Model {
     pub dofs: Dofs,
     /// Dead loads.
     pub loads: Vec<Load>,
-    /// Following pressures.
+    /// Following pressures and thermal expansions.
     pub pressures: Vec<Pressure>,
     /// Prescribed nonzero displacements.
     pub prescribed: Vec<Prescribed>,
@@ -362,6 +362,12 @@ impl Model {
 }
 
 impl Model {
+    /// Whether no load depends on the displacements. The expansion of a body with small displacements does not.
+    pub fn has_dead_loads(&self) -> bool {
+        let small = |body: usize| self.bodies[body].is_small();
+        self.pressures.iter().all(|p| p.expands.is_some_and(small))
+    }
+
     /// Turns a scene of contacts ([`Model::from_contacts`]) into one in space; `heights` are the z of its nodes.
     pub fn raise(&mut self, heights: Vec<f64>) {
         let ends = |low: f64, high: f64| {

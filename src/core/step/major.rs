@@ -122,7 +122,7 @@ impl Iterate {
         let state = &self.state;
         let loaded = state.way.is_none() && state.recovery.motion.is_none();
         // The stiffness of a pressure that follows its faces changes with the load.
-        let dead = self.model.pressures.is_empty();
+        let dead = self.model.has_dead_loads();
         loaded && dead && state.controls.settings.factor == Refactor::Needed
     }
 

@@ -86,6 +86,21 @@ pub enum RemedyInput {
 }
 
 impl RemedyInput {
+    /// The entry of the scene file that it changes, if it is a single one.
+    pub fn scene_entry(&self) -> Option<String> {
+        match self {
+            RemedyInput::Set(path, value) => {
+                let (group, key) = path.split_once('.')?;
+                Some(format!("{group}: ({key}: {value}),"))
+            }
+            RemedyInput::Increment(size) => Some(format!(
+                "history: (increment: {}),",
+                number::shortest(*size)
+            )),
+            _ => None,
+        }
+    }
+
     /// What to type in the debugger.
     pub fn typed(&self) -> String {
         match self {

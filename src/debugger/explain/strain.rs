@@ -82,7 +82,7 @@ pub fn limit(model: &Model, point: &PointDeformation) -> String {
     }
 }
 
-/// The scene value, as path and value, that gives an element a law valid there. `None` if there is no such law.
+/// Path and value of the scene setting that selects a material law valid at this stretch. `None` if there is no such law.
 pub fn other_law(model: &Model, point: &PointDeformation) -> Option<(String, String)> {
     let (elastic, name) = material(model, point)?;
     match (elastic.update, elastic.law) {

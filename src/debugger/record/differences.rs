@@ -59,6 +59,8 @@ const NODE: &str = "node";
 pub struct Differences {
     /// One row per difference.
     pub rows: Vec<Difference>,
+    /// Largest relative difference of equal numbers.
+    tolerance: f64,
 }
 
 /// What is compared: a field of the whole state, or of a node.
@@ -89,13 +91,21 @@ struct Scales {
 
 /// Compares two snapshots, node by node.
 pub fn compare(a: &Snapshot, b: &Snapshot) -> Differences {
-    Differences::between(a, b)
+    compare_within(a, b, TOLERANCE)
+}
+
+/// The same with another tolerance of numbers.
+pub fn compare_within(a: &Snapshot, b: &Snapshot, tolerance: f64) -> Differences {
+    Differences::between(a, b, tolerance)
 }
 
 impl Differences {
     /// All differences.
-    fn between(a: &Snapshot, b: &Snapshot) -> Differences {
-        let mut found = Differences::default();
+    fn between(a: &Snapshot, b: &Snapshot, tolerance: f64) -> Differences {
+        let mut found = Differences {
+            rows: Vec::new(),
+            tolerance,
+        };
         found.scenes(a, b);
         found.exact("interventions", &interventions(a), &interventions(b));
         found.exact("minor iterations done", &a.steps, &b.steps);
@@ -288,7 +298,7 @@ impl Differences {
         if left == right || (left.is_nan() && right.is_nan()) {
             return;
         }
-        let allowed = TOLERANCE * scale.max(left.abs()).max(right.abs());
+        let allowed = self.tolerance * scale.max(left.abs()).max(right.abs());
         let apart = (left - right).abs();
         #[cfg(mutants)]
         let apart =

@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 pub(super) struct Instance {
     /// Its name with a dot.
     pub prefix: String,
-    /// Added to numbers of nodes and elements.
+    /// Offset of the numbers of its nodes and elements.
     pub first: u64,
     shift: [f64; 3],
     /// A point of the axis of rotation, and the angle (radians).

@@ -2,6 +2,7 @@
 
 use super::source::DeckLocation;
 use crate::mesh::CellKind;
+use std::collections::BTreeMap;
 
 /// A CalculiX or Abaqus deck.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -34,6 +35,8 @@ pub struct Deck {
     pub ties: Vec<Tie>,
     /// Supports that are active from the start.
     pub supports: Vec<Value>,
+    /// Temperatures before the first step, by node.
+    pub temperatures: BTreeMap<usize, f64>,
     /// The steps in order, at least one.
     pub steps: Vec<Step>,
     /// Node sets whose displacements are printed.
@@ -140,6 +143,8 @@ pub struct Material {
     pub elastic: Option<(f64, f64)>,
     /// Mass per volume.
     pub density: Option<f64>,
+    /// Coefficient of thermal expansion, if it is a single one.
+    pub expansion: Option<f64>,
     /// Where it is defined.
     pub place: DeckLocation,
     /// Location of `*ELASTIC`.
@@ -289,6 +294,8 @@ pub struct Step {
     pub new_forces: bool,
     /// Whether element loads of earlier steps are removed.
     pub new_pressures: bool,
+    /// Whether temperatures of earlier steps are removed.
+    pub new_temperatures: bool,
     /// Prescribed degrees of freedom.
     pub motions: Vec<Value>,
     /// Point loads.
@@ -297,6 +304,8 @@ pub struct Step {
     pub pressures: Vec<Pressure>,
     /// Volume forces.
     pub weights: Vec<Weight>,
+    /// Rises of the temperature above that before the first step; the direction has no meaning.
+    pub temperatures: Vec<Value>,
 }
 
 /// The increments of a step.
@@ -337,6 +346,16 @@ impl Direction {
             6 => Direction::Rotation,
             _ => return None,
         })
+    }
+
+    /// Its number in a deck.
+    pub fn number(self) -> u64 {
+        match self {
+            Direction::X => 1,
+            Direction::Y => 2,
+            Direction::Z => 3,
+            Direction::Rotation => 6,
+        }
     }
 }
 

@@ -51,7 +51,7 @@ const fn read(
 }
 
 const OUTPUT: &str = "output is selected on the command line";
-const HEAT: &str = "it concerns temperatures, which are not supported";
+const HEAT: &str = "it concerns the flow of heat, which is not computed";
 const COUPLED: &str =
     "equations between nodes are not supported; give both bodies common nodes, or use *TIE";
 const OTHER: &str = "only *STATIC steps are supported";
@@ -189,7 +189,15 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
     ("ENERGY FILE", Ignored(OUTPUT)),
     ("ENERGY OUTPUT", Ignored(OUTPUT)),
     ("EQUATION", Refused(COUPLED)),
-    ("EXPANSION", Ignored(HEAT)),
+    (
+        "EXPANSION",
+        read(
+            "isotropic, with one coefficient; used by *TEMPERATURE",
+            Laws,
+            ANY,
+            Reader::expansion,
+        ),
+    ),
     ("FILM", Refused("only mechanical loads are supported")),
     ("FREQUENCY", Refused(OTHER)),
     (
@@ -216,7 +224,12 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
     ),
     (
         "INITIAL CONDITIONS",
-        Ignored("only TYPE=TEMPERATURE, because temperatures are ignored"),
+        read(
+            "TYPE=TEMPERATURE, from which *TEMPERATURE expands",
+            Model,
+            &["TYPE"],
+            Reader::initial,
+        ),
     ),
     (
         "INSTANCE",
@@ -358,8 +371,11 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
     ),
     (
         "TEMPERATURE",
-        Refused(
-            "thermal expansion is not supported; leave the temperatures out, or prescribe displacements by *BOUNDARY",
+        read(
+            "as a thermal expansion, uniform in each body",
+            Step,
+            &["OP", "AMPLITUDE"],
+            Reader::temperature,
         ),
     ),
     (

@@ -136,10 +136,6 @@ impl Reader {
         match card.key.as_str() {
             _ if self.is_outline => {}
             "ELEMENT" => drop(mesh::element_type(card, false)?),
-            "INITIALCONDITIONS" => {
-                card.choice("TYPE", &["TEMPERATURE"])?;
-                card.required("TYPE")?;
-            }
             _ => {}
         }
         match treatment(&card.key) {

@@ -58,6 +58,7 @@ impl Reader {
             name: free(card, &self.deck.materials, |m| &m.name)?,
             elastic: None,
             density: None,
+            expansion: None,
             place: card.place,
             elastic_place: card.place,
         });
@@ -99,6 +100,18 @@ impl Reader {
         let material = self.last_material(card)?;
         let (first, _) = first_of(card, "the density, at one temperature,", "the density")?;
         material.density = Some(first.number("the density")?);
+        Ok(())
+    }
+
+    /// Only temperatures in the steps need a coefficient that does not depend on them.
+    pub(super) fn expansion(&mut self, card: &Card<'_>) -> Done {
+        let is_isotropic = card
+            .value("TYPE")?
+            .is_none_or(|kind| kind.starts_with("ISO"));
+        let single = is_isotropic && card.lines.len() == 1;
+        let coefficient = card.cells().next().filter(|_| single);
+        let coefficient = coefficient.map(|cell| cell.number("the coefficient of expansion"));
+        self.last_material(card)?.expansion = coefficient.transpose()?;
         Ok(())
     }
 

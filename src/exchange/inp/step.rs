@@ -245,6 +245,60 @@ impl Reader {
         Ok(())
     }
 
+    /// Nodes and temperatures, line by line.
+    fn temperatures_of(&mut self, card: &Card<'_>) -> Done<Vec<(usize, f64, DeckLocation)>> {
+        let mut read = Vec::new();
+        for line in &card.lines {
+            let words = cells(*line);
+            let [first, second, ..] = words.as_slice() else {
+                bail!(line, "a node or a set and a temperature were expected");
+            };
+            let value = second.number("a temperature")?;
+            let nodes = self.members_of(first, MeshKind::Nodes)?;
+            self.names.count(nodes.len(), first.place())?;
+            read.extend(nodes.into_iter().map(|node| (node, value, first.place())));
+        }
+        Ok(read)
+    }
+
+    pub(super) fn initial(&mut self, card: &Card<'_>) -> Done {
+        card.required("TYPE")?;
+        card.choice("TYPE", &["TEMPERATURE"])?;
+        for (node, value, _) in self.temperatures_of(card)? {
+            self.deck.temperatures.insert(node, value);
+        }
+        Ok(())
+    }
+
+    pub(super) fn temperature(&mut self, card: &Card<'_>) -> Done {
+        let (amplitude, new) = self.course(card)?;
+        let mut values = Vec::new();
+        for (node, value, place) in self.temperatures_of(card)? {
+            let Some(&initial) = self.deck.temperatures.get(&node) else {
+                bail!(
+                    card,
+                    "node {} has no *INITIAL CONDITIONS, TYPE=TEMPERATURE to expand from",
+                    self.deck.nodes[node].label
+                );
+            };
+            if amplitude.is_some() && initial != 0.0 {
+                let why = "an amplitude of temperatures needs initial temperatures of 0";
+                return Err(card.wrong_at("AMPLITUDE", why));
+            }
+            values.push(Value {
+                node,
+                direction: Direction::X,
+                value: value - initial,
+                amplitude,
+                place,
+            });
+        }
+        let step = self.in_step(card)?;
+        step.new_temperatures |= new;
+        step.temperatures.extend(values);
+        Ok(())
+    }
+
     pub(super) fn load(&mut self, card: &Card<'_>) -> Done {
         let (amplitude, new) = self.course(card)?;
         self.in_step(card)?.new_pressures |= new;

@@ -185,10 +185,27 @@ impl Layout {
                     if !pressed.following.is_empty() {
                         loads.pressures.push(Pressure {
                             faces: pressed.following,
+                            expands: None,
                             value: *value,
                             scale,
                         });
                     }
+                    continue;
+                }
+                LoadSpec::Expansion { on, strain, scale } => {
+                    let here = at!["loads", k];
+                    limits::finite(&here.then("strain"), *strain, "the strain")?;
+                    let body = volumes::expanding(bodies, on).at(here.then("on"))?;
+                    let scale = factor(&here.then("scale"), scale)?;
+                    loads.pressures.push(match bodies[body].is_small() {
+                        true => Pressure {
+                            faces: Vec::new(),
+                            expands: Some(body),
+                            value: *strain,
+                            scale,
+                        },
+                        false => volumes::large_expansion(body, *strain, &scale),
+                    });
                     continue;
                 }
                 LoadSpec::Displacement { .. } => continue,

@@ -50,6 +50,7 @@ impl DeckObjects<'_> {
         self.forces(clock)?;
         self.pressures(clock);
         self.weights(clock)?;
+        self.expansions(clock)?;
         self.monitors();
         Ok(())
     }
@@ -422,6 +423,73 @@ impl DeckObjects<'_> {
                 on,
                 x: part(0),
                 y: part(1),
+                scale,
+            });
+        }
+        Ok(())
+    }
+
+    /// Thermal expansions, one per body whose temperature changes.
+    fn expansions(&mut self, clock: &Clock) -> Result<(), Fault> {
+        let deck = self.deck;
+        let warmed = |step: &Step| {
+            let values = step.temperatures.iter();
+            let one = |v: &Value| (v.node, v.value, v.amplitude, v.place);
+            values.map(one).collect()
+        };
+        let courses = self.courses(warmed, |step| step.new_temperatures, false);
+        if courses.is_empty() {
+            return Ok(());
+        }
+        let rise = |node: usize| {
+            let course = courses.get(&node)?;
+            let points = curve(clock, &deck.amplitudes, &course.given);
+            Some((scaled(&points)?, course.place))
+        };
+        let mut of_body: BTreeMap<usize, (Option<(TimedValue, DeckLocation)>, usize)> =
+            BTreeMap::new();
+        for (k, element) in deck.elements.iter().enumerate() {
+            for &node in &element.nodes {
+                let own = rise(node);
+                let Some(body) = self.body_of[k] else {
+                    match own {
+                        Some((_, place)) => bail!(
+                            place,
+                            "element {} is a beam; only continua expand here",
+                            element.label
+                        ),
+                        None => continue,
+                    }
+                };
+                let (first, _) = of_body.entry(body).or_insert_with(|| (own.clone(), k));
+                let same =
+                    own.as_ref().map(|(acts, _)| acts) == first.as_ref().map(|(acts, _)| acts);
+                if let Some((_, place)) = own.or_else(|| first.clone()).filter(|_| !same) {
+                    bail!(
+                        place,
+                        "the temperature of node {} differs from that of other nodes of {}; it must be uniform in a body",
+                        deck.nodes[node].label,
+                        self.spec.bodies[body].id()
+                    );
+                }
+            }
+        }
+        for (body, (rise, element)) in of_body {
+            let Some(((value, scale), place)) = rise else {
+                continue;
+            };
+            let material = &deck.materials[self.material_of[element]];
+            let Some(coefficient) = material.expansion else {
+                bail!(
+                    place,
+                    "material {} has no *EXPANSION with a single isotropic coefficient",
+                    material.name
+                );
+            };
+            self.origin.note(at!["loads", self.spec.loads.len()], place);
+            self.spec.loads.push(LoadSpec::Expansion {
+                on: self.spec.bodies[body].id().to_owned(),
+                strain: coefficient * value,
                 scale,
             });
         }

@@ -74,6 +74,17 @@ described! {
             #[serde(default)]
             scale: Scale,
         },
+        /// A thermal expansion of a solid: its material is free of stress when it is longer by this strain in all directions.
+        /// Requires `law: svk`, and `update: total` or `small`.
+        Expansion {
+            /// Id of the solid.
+            on: String,
+            /// Strain; coefficient of expansion times the rise of the temperature.
+            strain: f64,
+            /// Amplitude as points `(load factor of the scene, factor of this load)`. Default: the same.
+            #[serde(default)]
+            scale: Scale,
+        },
         /// A prescribed displacement (or rotation) of a node; `ID.all` moves a whole chain.
         Displacement {
             /// Name of a node; `ID.all` for a whole chain.

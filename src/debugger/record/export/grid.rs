@@ -261,6 +261,7 @@ fn stresses(model: &Model, state: &State, grid: &mut Grid) {
             u: &state.u,
             before: &state.start.u,
             history: &state.start.history,
+            load_factor: state.load_factor,
         },
     );
     let mut all = vec![f64::NAN; TENSOR.len() * model.nodes.len()];

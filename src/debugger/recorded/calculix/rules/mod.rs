@@ -46,8 +46,14 @@ const RULES: &[Rule] = &[
     Record(record::capped_correction),
 ];
 
-/// The findings of all rules, in the order of the rules.
+/// The findings of all rules, in the order of the rules; none for a run that reached its end.
 pub fn examine(deck: Option<&DeckShape>, run: Option<&CalculixRun>) -> Vec<RunFinding> {
+    if deck
+        .zip(run)
+        .is_some_and(|(deck, run)| record::is_complete(run, deck))
+    {
+        return Vec::new();
+    }
     let findings = RULES.iter().flat_map(|rule| match (rule, deck, run) {
         (Deck(rule), Some(deck), _) => rule(deck),
         (Record(rule), _, Some(run)) => rule(run, deck),

@@ -8,7 +8,8 @@ use stickslip_exchange::inp::deck::{Direction, Faces, Value};
 use stickslip_scene::number::sig4;
 use stickslip_scene::shown::first_of;
 
-/// Contact stiffness times element size above this many Young's moduli is reported (CalculiX recommends 5 to 50).
+/// A contact stiffness above this many Young's moduli, by itself and times the element size, is reported. CalculiX recommends 5 to
+/// 50 in its usual units; the size makes the rule independent of them.
 const STIFF: f64 = 100.0;
 /// Contact stiffness times element size that is advised, in Young's moduli.
 const ADVISED: f64 = 20.0;
@@ -234,11 +235,10 @@ pub fn stiff_contact(shape: &DeckShape) -> Vec<RunFinding> {
             )
         };
         let advised = rounded(ADVISED * young / pair.sizes[0]);
-        let is_stiff = ratio(stiffness) > STIFF;
+        let is_far = |stiffness: f64| ratio(stiffness) > STIFF && stiffness > STIFF * young;
+        let is_stiff = is_far(stiffness);
         let normal = if is_stiff { advised } else { stiffness };
-        let slope = law
-            .stick
-            .filter(|slope| ratio(*slope) > STIFF || *slope > normal);
+        let slope = law.stick.filter(|slope| is_far(*slope) || *slope > normal);
         let friction = format!(
             "{}, {}",
             plain(law.friction),
@@ -322,6 +322,10 @@ pub fn constrained_slaves(shape: &DeckShape) -> Vec<RunFinding> {
         let against: Vec<&&Value> = against.collect();
         let held: BTreeSet<usize> = against.iter().map(|value| value.node).collect();
         if let Some(first) = against.first() {
+            let rest = supports.iter().filter(|value| {
+                value.place == first.place && !against.iter().any(|other| other == value)
+            });
+            let rest: Vec<String> = rest.map(|value| support_line(shape, value)).collect();
             found.push(RunFinding {
                 rule: "constrained slave nodes",
                 cause: format!(
@@ -335,7 +339,10 @@ pub fn constrained_slaves(shape: &DeckShape) -> Vec<RunFinding> {
                     "leave these nodes out of *BOUNDARY (line {})",
                     first.place.line
                 ),
-                lines: String::new(),
+                lines: match rest.is_empty() {
+                    true => "** supports no other node".into(),
+                    false => rest.join("\n"),
+                },
             });
         }
         let tied: BTreeSet<usize> = shape
@@ -376,6 +383,13 @@ pub fn constrained_slaves(shape: &DeckShape) -> Vec<RunFinding> {
         }
     }
     found
+}
+
+/// A support as a line of *BOUNDARY.
+fn support_line(shape: &DeckShape, value: &Value) -> String {
+    let label = shape.deck.nodes[value.node].label;
+    let direction = value.direction.number();
+    format!("{label}, {direction}, {direction}, {}", plain(value.value))
 }
 
 /// A surface of the slave nodes without some of them; empty if that leaves none.

@@ -1,6 +1,6 @@
 //! Rules on the record of a run: increments that ran out, contacts that chatter, corrections at their cap.
 
-use super::super::run::CalculixRun;
+use super::super::run::{CalculixRun, Switching};
 use super::shape::DeckShape;
 use super::supports::{plain, rounded};
 use std::collections::BTreeSet;
@@ -48,6 +48,17 @@ pub fn increments_used(run: &CalculixRun, shape: Option<&DeckShape>) -> Vec<RunF
     }]
 }
 
+/// Whether a run reached the end of its last step.
+pub fn is_complete(run: &CalculixRun, shape: &DeckShape) -> bool {
+    let (last, steps) = (run.files.attempts.last(), &shape.deck.steps);
+    last.zip(steps.last()).is_some_and(|(last, step)| {
+        let reached = last
+            .row
+            .is_some_and(|row| row.step_time >= step.time.period * (1.0 - 1e-6));
+        ended_converged(run) && last.step as usize == steps.len() && reached
+    })
+}
+
 /// Did the last attempt converge? Then attempts that were cut on the way did not stop the run.
 fn ended_converged(run: &CalculixRun) -> bool {
     run.files
@@ -56,20 +67,37 @@ fn ended_converged(run: &CalculixRun) -> bool {
         .is_some_and(|last| last.end == End::Converged)
 }
 
-/// Contacts that open and close in turn: who, where, how often, and against whom.
+/// Contacts that open and close in turn, in the last attempt or else in an earlier one: who, where, how often, and against whom.
 pub fn chatter(run: &CalculixRun, shape: Option<&DeckShape>) -> Vec<RunFinding> {
     if ended_converged(run) {
         return Vec::new();
     }
-    let often = run
-        .switching
-        .iter()
-        .filter(|found| found.most().1 >= CHATTER);
-    let often: Vec<_> = often.collect();
-    let Some(most) = often.first() else {
+    let attempts = run.files.attempts.len();
+    let in_last = |found: &Switching| match found.attempts.last() {
+        Some(&(attempt, count)) if attempt + 1 == attempts => (attempt, count),
+        _ => (attempts, 0),
+    };
+    let chattering = |(_, (_, count)): &(&Switching, (usize, usize))| *count >= CHATTER;
+    let all = || run.switching.iter();
+    let last: Vec<_> = all()
+        .map(|found| (found, in_last(found)))
+        .filter(chattering)
+        .collect();
+    let (counted, when) = match last.is_empty() {
+        true => (
+            all()
+                .map(|found| (found, found.most()))
+                .filter(chattering)
+                .collect(),
+            format!("one of {attempts} attempts"),
+        ),
+        false => (last, "the last attempt".to_owned()),
+    };
+    let counts = counted.iter().map(|(_, counts)| *counts);
+    let Some((attempt, count)) = counts.max_by_key(|(_, count)| *count) else {
         return Vec::new();
     };
-    let (attempt, count) = most.most();
+    let often: Vec<&Switching> = counted.iter().map(|(found, _)| *found).collect();
     let name = |slave: usize| match shape.and_then(|shape| place(run, shape, slave)) {
         Some(at) => format!("{} {at}", run.slave_with_corners(slave)),
         None => run.slave_with_corners(slave),
@@ -93,7 +121,7 @@ pub fn chatter(run: &CalculixRun, shape: Option<&DeckShape>) -> Vec<RunFinding> 
     vec![RunFinding {
         rule: "chattering",
         cause: format!(
-            "{} of {} contacts switch {CHATTER} times or more within an attempt, up to {count} times in {}: {}; against {masters}",
+            "{} of {} contacts switch {CHATTER} times or more in {when}, up to {count} times in {}: {}; against {masters}",
             often.len(),
             run.files.slaves.len(),
             run.attempt_name(attempt),
