@@ -225,6 +225,7 @@ fn parameters(scene: &Scene) -> Vec<ParameterMessage> {
         most: None,
         choices: Vec::new(),
         about: about.into(),
+        tunes: false,
     };
     let mut all = vec![
         number(
@@ -267,6 +268,7 @@ fn parameters(scene: &Scene) -> Vec<ParameterMessage> {
             most: None,
             choices,
             about: listed.kind,
+            tunes: false,
         }
     }));
     all

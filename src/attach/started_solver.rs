@@ -151,6 +151,7 @@ fn parameter(sent: &message::ParameterMessage) -> Result<Parameter, Fault> {
             ParameterKind::Text => Range::Text,
         },
         about: shown::line(&sent.about).into_owned(),
+        tunes: sent.tunes,
     };
     match parameter.check(&parameter.value) {
         Ok(()) => Ok(parameter),

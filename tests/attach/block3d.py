@@ -63,7 +63,7 @@ def stiffness():
 
 class Block(Solver):
     name, version = "block3d", "1"
-    parameters = (Parameter("friction", "Coefficient", least=0), Parameter("r", "Scale of the augmentation", least=1e-6))
+    parameters = (Parameter("friction", "Coefficient", least=0), Parameter("r", "Scale of the augmentation", least=1e-6, tunes=True))
 
     def __init__(self):
         self.r, self.friction = float((sys.argv[1:2] or [1])[0]), 0.4

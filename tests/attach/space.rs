@@ -194,6 +194,11 @@ fn remedies_are_tried_on_the_solver_itself() {
         "{}",
         out(&output)
     );
+    assert!(
+        out(&output).contains("r 0.3                 converged"),
+        "{}",
+        out(&output)
+    );
     let cause = "why: A consistent state of the interface problem was found";
     assert!(err(&output).contains(cause), "{}", err(&output));
 }

@@ -462,6 +462,7 @@ fn parameters() -> Capabilities {
         value,
         range,
         about: about.into(),
+        tunes: false,
     };
     let positive = Range::Numbers {
         least: 0.0,

@@ -71,6 +71,7 @@ class Parameter:
     least: Optional[float] = None
     most: Optional[float] = None
     choices: tuple[str, ...] = ()
+    tunes: bool = False  # Changes how the solver iterates, not the answer: remedies try a tenth and a hundredth.
 
     def checked(self, value: Any) -> Any:
         """The value converted to its kind; refused if it has another kind or is out of range."""

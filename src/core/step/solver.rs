@@ -319,6 +319,8 @@ pub struct Parameter {
     pub range: Range,
     /// One-line description; may be empty.
     pub about: String,
+    /// Whether it changes how the solver iterates, but not the answer.
+    pub tunes: bool,
 }
 
 /// Accepted values of a parameter.

@@ -166,7 +166,7 @@ pub fn all(
     all
 }
 
-/// Remedies that an attached solver supports: initial modes, and possibly another increment size.
+/// Remedies that an attached solver supports: initial modes, parameters that tune it, and possibly another increment size.
 pub fn offered(
     model: &Model,
     state: &State,
@@ -181,7 +181,8 @@ pub fn offered(
         .into_iter()
         .filter_map(|mode| Remedy::touching(state, mode));
     let answers = Remedy::answers(model, found).into_iter();
-    let all = answers.chain(touching).chain(parts);
+    let tuned = offers.parameters.iter().flat_map(Remedy::tuned);
+    let all = answers.chain(touching).chain(tuned).chain(parts);
     let takes = |remedy: &Remedy| remedy.first.iter().all(|first| offers.check(first).is_ok());
     all.filter(takes).collect()
 }
@@ -377,7 +378,13 @@ pub fn compare(a: &RemedyTrial, b: &RemedyTrial) -> Ordering {
     let lasts = |trial: &RemedyTrial| match (rank(trial), &trial.how) {
         (2, _) => 0,
         (_, RemedyInput::Restart(_)) => 0,
-        (_, RemedyInput::Set(..) | RemedyInput::Increment(_) | RemedyInput::IncrementOn(..)) => 1,
+        (
+            _,
+            RemedyInput::Set(..)
+            | RemedyInput::Parameter(..)
+            | RemedyInput::Increment(_)
+            | RemedyInput::IncrementOn(..),
+        ) => 1,
         (_, RemedyInput::StartFrom(_) | RemedyInput::Listed) => 2,
     };
     (rank(a).cmp(&rank(b)))

@@ -14,7 +14,8 @@ use stickslip_core::model::{
     Settings, Sticking, Strategy, Touch,
 };
 use stickslip_core::step::event::Failure;
-use stickslip_core::step::intervene::{Intervention, Start};
+use stickslip_core::step::intervene::{Intervention, Start, Value};
+use stickslip_core::step::solver::Parameter;
 use stickslip_core::step::state::State;
 use stickslip_scene::gaps::{StartGaps, start_gaps, turned};
 use stickslip_scene::number;
@@ -47,6 +48,8 @@ pub enum RemedyKind {
     MoreMinors,
     /// More major iterations.
     MoreMajors,
+    /// A smaller value of a parameter of an attached solver.
+    Tuned,
     /// Start the nodes on their surface in this mode; if there are none, the closest node.
     Start(Mode),
     /// Nodes keep their mode as long as they violate its condition only slightly.
@@ -72,6 +75,8 @@ pub enum RemedyInput {
     Increment(f64),
     /// The leg and the increment size, if each leg of the path has its own size.
     IncrementOn(usize, f64),
+    /// A parameter of an attached solver, and its value.
+    Parameter(String, f64),
     /// Number of a consistent state in the census, from 0.
     StartFrom(usize),
     /// Values to change in the scene, by path, for a restart.
@@ -100,6 +105,9 @@ impl RemedyInput {
     pub fn typed(&self) -> String {
         match self {
             RemedyInput::Set(path, value) => format!(":set {path} {value}"),
+            RemedyInput::Parameter(name, value) => {
+                format!(":set {name} {}", number::shortest(*value))
+            }
             RemedyInput::Increment(size) | RemedyInput::IncrementOn(_, size) => {
                 format!(":increment {}", number::shortest(*size))
             }
@@ -146,6 +154,25 @@ impl Remedy {
         })
     }
 
+    /// A tenth and a hundredth of a parameter of an attached solver that changes only how it iterates.
+    pub fn tuned(parameter: &Parameter) -> Vec<Remedy> {
+        let Value::Number(now) = parameter.value else {
+            return Vec::new();
+        };
+        let value = |part: f64| Some(now / part).filter(|_| parameter.tunes && now != 0.0);
+        let values = [10.0, 100.0].into_iter().filter_map(value);
+        let remedy = |value: f64| Remedy {
+            kind: RemedyKind::Tuned,
+            label: format!("{} {}", parameter.name, number::shortest(value)),
+            how: RemedyInput::Parameter(parameter.name.clone(), value),
+            first: vec![Intervention::Parameter {
+                name: parameter.name.clone(),
+                value: Value::Number(value),
+            }],
+        };
+        values.map(remedy).collect()
+    }
+
     /// The remedy of a kind at a state; `None` if it would change nothing or does not apply.
     pub fn from_kind(kind: RemedyKind, model: &Model, state: &State) -> Option<Remedy> {
         let remedy = |label: &str, how: RemedyInput, first: Vec<Intervention>| Remedy {
@@ -155,7 +182,7 @@ impl Remedy {
             first,
         };
         match kind {
-            RemedyKind::Answer(_) | RemedyKind::Law => None,
+            RemedyKind::Answer(_) | RemedyKind::Law | RemedyKind::Tuned => None,
             RemedyKind::Reverse(surface) => {
                 let name = &model.surfaces.get(surface)?.name;
                 let label = format!("reverse surface {name}");
@@ -352,6 +379,7 @@ fn change(
         }
         RemedyKind::Answer(_)
         | RemedyKind::Part(_)
+        | RemedyKind::Tuned
         | RemedyKind::Start(_)
         | RemedyKind::Hysteresis
         | RemedyKind::Gaps(_)

@@ -241,6 +241,9 @@ pub struct ParameterMessage {
     /// One-line description.
     #[serde(default)]
     pub about: String,
+    /// Whether it changes how the solver iterates, but not the answer; remedies try smaller values.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub tunes: bool,
 }
 
 /// Kind of a parameter's value.
