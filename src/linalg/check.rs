@@ -29,3 +29,9 @@ pub(super) fn largest(values: &[f64]) -> f64 {
         }
     })
 }
+
+/// Whether two vectors of the same length are equal; compares all entries, which is faster than stopping at the first difference.
+pub(super) fn are_equal(a: &[f64], b: &[f64]) -> bool {
+    let pairs = a.iter().zip(b);
+    !pairs.fold(false, |differ, (a, b)| differ | (a != b))
+}

@@ -18,6 +18,8 @@ const THRESHOLD: f64 = 1e-6;
 /// Fronts up to this size, and column blocks up to this width in larger ones, are eliminated by plain loops.
 const SMALL: usize = 64;
 const NARROW: usize = 16;
+/// Steps that are applied in one pass, in order.
+pub(super) const STEPS: usize = 4;
 
 /// A front's matrix in column-major order, and the meaning of its rows and columns.
 #[derive(Default)]
@@ -104,13 +106,72 @@ fn step(own: &mut [f64], rest: &mut [f64], size: usize, k: usize) {
 }
 
 /// Applies all steps of `own` to a column, in order.
-fn substitute(own: &[f64], column: &mut [f64]) {
-    for (k, lower) in own.chunks_exact(column.len()).enumerate() {
-        let factor = column[k];
-        if factor != 0.0 {
-            for (value, lower) in column[k + 1..].iter_mut().zip(&lower[k + 1..]) {
-                *value -= factor * lower;
+pub(super) fn substitute(own: &[f64], column: &mut [f64]) {
+    let size = column.len().max(1);
+    let mut blocks = own.chunks_exact(STEPS * size);
+    let mut first = 0;
+    for block in &mut blocks {
+        let steps: [&[f64]; STEPS] =
+            std::array::from_fn(|k| &block[k * size + first..][..size - first]);
+        let (head, rest) = column[first..].split_at_mut(STEPS);
+        for k in 1..STEPS {
+            for j in 0..k {
+                head[k] -= head[j] * steps[j][k];
             }
+        }
+        subtract_all(
+            rest,
+            steps.map(|step| &step[STEPS..]),
+            std::array::from_fn(|k| head[k]),
+        );
+        first += STEPS;
+    }
+    for (k, lower) in blocks.remainder().chunks_exact(size).enumerate() {
+        let k = first + k;
+        let factor = column[k];
+        subtract(&mut column[k + 1..], &lower[k + 1..], factor);
+    }
+}
+
+/// Solves U x = b, in `b`, for the steps of `own` with columns of length `size`.
+pub(super) fn substitute_back(own: &[f64], size: usize, b: &mut [f64]) {
+    let mut last = b.len();
+    let column = |k: usize| &own[k * size..];
+    while last > 0 {
+        let first = last.saturating_sub(STEPS);
+        for k in (first..last).rev() {
+            b[k] /= column(k)[k];
+            let value = b[k];
+            subtract(&mut b[first..k], &column(k)[first..k], value);
+        }
+        let (rest, block) = b[..last].split_at_mut(first);
+        if block.len() == STEPS {
+            let steps: [&[f64]; STEPS] = std::array::from_fn(|k| &column(last - 1 - k)[..first]);
+            subtract_all(rest, steps, std::array::from_fn(|k| block[STEPS - 1 - k]));
+        }
+        last = first;
+    }
+}
+
+/// Subtracts columns times their factors from `to`, one after the other, in one pass.
+pub(super) fn subtract_all(
+    to: &mut [f64],
+    [a, b, c, d]: [&[f64]; STEPS],
+    [p, q, r, s]: [f64; STEPS],
+) {
+    if [p, q, r, s] == [0.0; STEPS] {
+        return;
+    }
+    for ((((to, a), b), c), d) in to.iter_mut().zip(a).zip(b).zip(c).zip(d) {
+        *to = *to - p * a - q * b - r * c - s * d;
+    }
+}
+
+/// Subtracts a column times a factor from `to`.
+pub(super) fn subtract(to: &mut [f64], column: &[f64], factor: f64) {
+    if factor != 0.0 {
+        for (to, value) in to.iter_mut().zip(column) {
+            *to -= factor * value;
         }
     }
 }

@@ -16,10 +16,13 @@
 //! therefore repeat only the parts that depend on changed modes, with the same bits as a full factorization. Remainders are
 //! stored if changing rows may need them again, otherwise only until the parent has used them.
 
-use super::check::SolveError;
-use super::front::Front;
+use super::check::{SolveError, are_equal};
+use super::front::{Front, STEPS, substitute, substitute_back, subtract, subtract_all};
 use super::pattern::Pattern;
 use super::tree::{Node, Tree};
+
+/// Number of values that are compared at once with those factored last.
+const RUN: usize = 64;
 
 /// A node of the tree, with its factors.
 struct FactoredNode {
@@ -154,13 +157,18 @@ impl Fronts {
         self.fronts
             .iter_mut()
             .for_each(|front| front.changed = false);
-        let old = self.values.iter_mut().zip(values);
-        for ((old, &new), &owner) in old.zip(&self.owners) {
-            if *old != new {
-                *old = new;
-                let front = &mut self.fronts[owner as usize];
-                front.changed = true;
-                all |= !front.node.changing;
+        let old = self.values.chunks_mut(RUN).zip(values.chunks(RUN));
+        for ((old, new), owners) in old.zip(self.owners.chunks(RUN)) {
+            if are_equal(old, new) {
+                continue;
+            }
+            for ((old, &new), &owner) in old.iter_mut().zip(new).zip(owners) {
+                if *old != new {
+                    *old = new;
+                    let front = &mut self.fronts[owner as usize];
+                    front.changed = true;
+                    all |= !front.node.changing;
+                }
             }
         }
         if all {
@@ -293,17 +301,9 @@ impl FactoredNode {
     }
 
     fn forward(&self, own: &mut Vec<f64>, b: &mut [f64]) {
-        let size = self.rows.len();
         own.clear();
         own.extend(self.rows.iter().map(|&row| b[row]));
-        for (k, column) in self.lower.chunks_exact(size.max(1)).enumerate() {
-            let value = own[k];
-            if value != 0.0 {
-                for (own, lower) in own[k + 1..].iter_mut().zip(&column[k + 1..]) {
-                    *own -= value * lower;
-                }
-            }
-        }
+        substitute(&self.lower, own);
         for (own, &row) in own.iter().zip(&self.rows) {
             b[row] = *own;
         }
@@ -313,25 +313,16 @@ impl FactoredNode {
         let (size, done) = (self.rows.len(), self.done);
         own.clear();
         own.extend(self.rows[..done].iter().map(|&row| b[row]));
-        for (column, &later) in self
-            .upper
-            .chunks_exact(done.max(1))
-            .zip(&self.columns[done..])
-        {
-            let value = x[later];
-            if value != 0.0 {
-                for (own, upper) in own.iter_mut().zip(column) {
-                    *own -= value * upper;
-                }
-            }
+        let mut columns = self.upper.chunks_exact(done.max(1));
+        let mut later = self.columns[done..].chunks_exact(STEPS);
+        for later in &mut later {
+            let four: [&[f64]; STEPS] = std::array::from_fn(|_| columns.next().unwrap_or_default());
+            subtract_all(own, four, std::array::from_fn(|k| x[later[k]]));
         }
-        for (k, column) in self.lower.chunks_exact(size.max(1)).enumerate().rev() {
-            own[k] /= column[k];
-            let value = own[k];
-            for (own, upper) in own[..k].iter_mut().zip(column) {
-                *own -= value * upper;
-            }
+        for (column, &later) in columns.zip(later.remainder()) {
+            subtract(own, column, x[later]);
         }
+        substitute_back(&self.lower, size, own);
         for (own, &column) in own.iter().zip(&self.columns) {
             x[column] = *own;
         }

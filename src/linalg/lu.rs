@@ -10,7 +10,7 @@
 //! Cheap checks come first: a solution is refined only if its residual is above round-off, and the norm of the inverse is
 //! estimated by a solve only if a pivot is small. Both decisions depend only on the matrix and the right-hand side.
 
-use super::check::{SolveError, fill_probe, largest};
+use super::check::{SolveError, are_equal, fill_probe, largest};
 use super::fronts::Fronts;
 use super::pattern::{Pattern, symbolic_view};
 use faer::dyn_stack::{MemBuffer, MemStack};
@@ -332,7 +332,7 @@ impl Factors {
         for &(place, ..) in &self.own {
             self.values[place] = values[place];
         }
-        if self.applied && self.values == values {
+        if self.applied && are_equal(&self.values, values) {
             self.scale_own_rows();
             for &(place, row, col) in &self.own {
                 self.scaled[place] = self.values[place] * self.col_scale[col] * self.row_scale[row];

@@ -4,6 +4,7 @@
 use crate::geometry::distance_to_segment;
 use crate::number::sig4;
 use crate::pressed;
+use std::cell::LazyCell;
 use std::collections::HashSet;
 use stickslip_core::contact::element::SurfaceElement;
 use stickslip_core::contact::facing::{MOST as MOST_SURFACES, faced};
@@ -264,22 +265,19 @@ fn unheld(model: &Model) -> Vec<String> {
 /// Pairs of solids where a node of one lies inside the outline of the other.
 fn overlapping(model: &Model) -> Vec<String> {
     let solids = model.bodies.iter().filter_map(|body| match &body.kind {
-        BodyKind::Solid(solid) => Some((body, outline(model, &solid.edges))),
+        BodyKind::Solid(solid) => Some((body, Outline::new(model, &solid.edges))),
         _ => None,
     });
-    let solids: Vec<(&Body, Vec<[[f64; 2]; 2]>)> = solids.collect();
+    let solids: Vec<(&Body, Outline)> = solids.collect();
+    let near = NONE.sqrt() * model.length;
     let mut all = Vec::new();
-    for (a, (body, sides)) in solids.iter().enumerate() {
-        for (other, _) in solids
-            .iter()
-            .enumerate()
-            .filter(|(b, _)| *b != a)
-            .map(|(_, s)| s)
-        {
-            let own: HashSet<usize> = body.nodes.iter().copied().collect();
+    for (a, (body, outline)) in solids.iter().enumerate() {
+        let others = solids.iter().enumerate();
+        let others = others.filter(|(b, (_, other))| *b != a && outline.meets(other));
+        let own = LazyCell::new(|| body.nodes.iter().copied().collect::<HashSet<usize>>());
+        for (_, (other, _)) in others {
             let deep = |node: &&usize| {
-                !own.contains(node)
-                    && is_inside(model.nodes[**node].at, sides, NONE.sqrt() * model.length)
+                outline.contains(model.nodes[**node].at, near) && !own.contains(node)
             };
             if let Some(&node) = other.kind.lines().iter().flatten().find(deep) {
                 all.push(format!(
@@ -292,29 +290,46 @@ fn overlapping(model: &Model) -> Vec<String> {
     all
 }
 
-/// The sides of a closed outline, straight between nodes.
-fn outline(model: &Model, edges: &[Vec<usize>]) -> Vec<[[f64; 2]; 2]> {
-    edges
-        .iter()
-        .flat_map(|edge| edge.windows(2))
-        .map(|pair| [model.nodes[pair[0]].at, model.nodes[pair[1]].at])
-        .collect()
+/// A closed outline, straight between nodes.
+struct Outline {
+    sides: Vec<[[f64; 2]; 2]>,
+    /// Smallest and largest coordinates.
+    low: [f64; 2],
+    high: [f64; 2],
 }
 
-/// Whether a point lies inside an outline, by more than `near` from each of its sides: a ray from it crosses the outline an odd
-/// number of times.
-fn is_inside(at: [f64; 2], sides: &[[[f64; 2]; 2]], near: f64) -> bool {
-    let mut inside = false;
-    for [a, b] in sides {
-        if distance_to_segment(at, *a, *b) <= near {
-            return false;
-        }
-        let crossing = |y: f64| a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]);
-        if (a[1] > at[1]) != (b[1] > at[1]) && at[0] < crossing(at[1]) {
-            inside = !inside;
+impl Outline {
+    fn new(model: &Model, edges: &[Vec<usize>]) -> Self {
+        let pairs = edges.iter().flat_map(|edge| edge.windows(2));
+        let sides = pairs.map(|pair| [model.nodes[pair[0]].at, model.nodes[pair[1]].at]);
+        let sides: Vec<[[f64; 2]; 2]> = sides.collect();
+        let over = |from: f64, choose: fn(f64, f64) -> f64| {
+            let ends = || sides.iter().flatten();
+            [0, 1].map(|axis| ends().fold(from, |most, end| choose(most, end[axis])))
+        };
+        Outline {
+            low: over(f64::INFINITY, f64::min),
+            high: over(f64::NEG_INFINITY, f64::max),
+            sides,
         }
     }
-    inside
+
+    /// Whether the bounding boxes have a point in common.
+    fn meets(&self, other: &Outline) -> bool {
+        (0..2).all(|k| self.low[k] <= other.high[k] && other.low[k] <= self.high[k])
+    }
+
+    /// Whether a point lies inside by more than `near` from each side: a ray from it crosses the outline an odd number of times.
+    fn contains(&self, at: [f64; 2], near: f64) -> bool {
+        let inside_box = (0..2).all(|k| at[k] - self.low[k] > near && self.high[k] - at[k] > near);
+        let crosses = |&&[a, b]: &&[[f64; 2]; 2]| {
+            let crossing = |y: f64| a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]);
+            (a[1] > at[1]) != (b[1] > at[1]) && at[0] < crossing(at[1])
+        };
+        inside_box
+            && self.sides.iter().filter(crosses).count() % 2 == 1
+            && !(self.sides.iter()).any(|[a, b]| distance_to_segment(at, *a, *b) <= near)
+    }
 }
 
 fn some(model: &Model, slaves: &[usize]) -> String {

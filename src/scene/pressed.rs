@@ -26,25 +26,26 @@ struct HeldPoint {
 
 /// One sentence for each solid that prescribed displacements compress beyond the range of St Venant-Kirchhoff's law.
 pub fn warnings(model: &Model) -> Vec<String> {
+    let motions = Motions::from_model(model);
     let bodies = model.bodies.iter();
     let warnings = bodies.filter_map(|body| match &body.kind {
-        BodyKind::Solid(solid) => warning(model, body, solid),
+        BodyKind::Solid(solid) => warning(&motions, body, solid),
         _ => None,
     });
     warnings.collect()
 }
 
-fn warning(model: &Model, body: &Body, solid: &Solid) -> Option<String> {
+fn warning(motions: &Motions, body: &Body, solid: &Solid) -> Option<String> {
+    let model = motions.model;
     let softens = |number: &usize| {
         let elastic = &solid.materials[*number];
         StretchRange::from_elastic(elastic) == StretchRange::Stretch(SOFTENING)
     };
     let number = (0..solid.materials.len()).find(softens)?;
-    let motions = Motions::from_model(model);
     let mut worst: Option<(f64, f64, [usize; 2])> = None;
     for load in loads(model) {
         for axis in 0..2 {
-            let points = held_points(model, body, &motions, (axis, load));
+            let points = held_points(body, motions, (axis, load));
             let Some((stretch, nodes)) = smallest_stretch(&points, axis) else {
                 continue;
             };
@@ -78,11 +79,14 @@ fn loads(model: &Model) -> Vec<f64> {
     all
 }
 
-/// Values of the degrees of freedom without an equation.
+/// Values of the degrees of freedom without an equation, and what else is found by node.
 struct Motions<'a> {
     model: &'a Model,
     /// Number of the prescribed value for each degree of freedom.
     prescribed: Vec<Option<usize>>,
+    positions: Vec<[f64; 2]>,
+    /// The contacts of each node.
+    contacts: Vec<Vec<usize>>,
 }
 
 impl<'a> Motions<'a> {
@@ -91,7 +95,16 @@ impl<'a> Motions<'a> {
         for (number, one) in model.prescribed.iter().enumerate() {
             prescribed[one.dof] = Some(number);
         }
-        Motions { model, prescribed }
+        let mut contacts = vec![Vec::new(); model.nodes.len()];
+        for (number, contact) in model.contacts.iter().enumerate() {
+            contacts[contact.node].push(number);
+        }
+        Motions {
+            model,
+            prescribed,
+            positions: model.nodes.iter().map(|node| node.at).collect(),
+            contacts,
+        }
     }
 
     /// Displacement of a node along an axis at a load factor; `None` if unknown.
@@ -108,28 +121,27 @@ impl<'a> Motions<'a> {
 }
 
 /// The points of a body whose motion along an axis is prescribed at a load factor.
-fn held_points(
-    model: &Model,
-    body: &Body,
-    motions: &Motions,
-    (axis, load): (usize, f64),
-) -> Vec<HeldPoint> {
+fn held_points(body: &Body, motions: &Motions, (axis, load): (usize, f64)) -> Vec<HeldPoint> {
+    let (model, places) = (motions.model, &motions.positions);
     let point = |node: usize, motion: f64| HeldPoint {
-        at: model.nodes[node].at,
+        at: places[node],
         motion,
         node,
     };
     let own = body.nodes.iter();
     let own = own.filter_map(|&node| Some(point(node, motions.at(node, axis, load)?)));
-    let places: Vec<[f64; 2]> = model.nodes.iter().map(|node| node.at).collect();
-    let pushed = model.contacts.iter().filter_map(|contact| {
-        if !body.nodes.contains(&contact.node) || motions.at(contact.node, axis, load).is_some() {
+    let contacts = body.nodes.iter().flat_map(|&node| &motions.contacts[node]);
+    let mut contacts: Vec<usize> = contacts.copied().collect();
+    contacts.sort_unstable();
+    let pushed = contacts.iter().filter_map(|&number| {
+        let contact = &model.contacts[number];
+        if motions.at(contact.node, axis, load).is_some() {
             return None;
         }
         let at = places[contact.node];
-        let spot = project(at, &model.surfaces, &contact.surfaces, &places, None)?;
+        let spot = project(at, &model.surfaces, &contact.surfaces, places, None)?;
         let surface = &model.surfaces[spot.surface];
-        let over = projection_at(&model.surfaces, spot, &places, at);
+        let over = projection_at(&model.surfaces, spot, places, at);
         let along = over.normal[axis];
         let mover = *surface.elements.get(spot.element)?.first()?;
         if !surface.rigid || along.abs() < ALONG {
