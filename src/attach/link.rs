@@ -130,8 +130,12 @@ impl Link {
                 child.stdout.take().map(|stream| Box::new(stream) as _),
                 child.stderr.take().map(|stream| Box::new(stream) as _),
             ];
-            // Without a shell the solver ends when it reads its input next.
-            link.guard = Guard::new(&child).ok();
+            match Guard::new(&child) {
+                Ok(guard) => link.guard = Some(guard),
+                Err(why) => log.noted(&format!(
+                    "no guard ends the solver if this program is killed: {why}"
+                )),
+            }
             link.child = Some(child);
         }
         log.noted(&format!("{STARTED}: {}", start.typed()));

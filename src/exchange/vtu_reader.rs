@@ -45,8 +45,7 @@ pub fn read(text: &str) -> Result<(Vec<[f64; 3]>, Vec<Cell>), String> {
     let mut cells = Vec::with_capacity(types.len().min(ends.len()));
     let mut start = 0;
     for (end, number) in ends.iter().zip(&types) {
-        let kinds = KINDS.into_iter();
-        let kind = kinds
+        let kind = KINDS
             .into_iter()
             .find(|&kind| f64::from(cell_type(kind)) == *number);
         let kind = kind.ok_or_else(|| format!("cells of VTK's type {number} are not read"))?;

@@ -3,8 +3,8 @@
 /// Shown for a number that an attached solver does not report.
 pub const UNREPORTED: &str = "-";
 
-/// A number with so many significant digits as people write it: no trailing zeros, and an exponent only below 0.001 and where
-/// more than one digit before the decimal point would be dropped, or from 1e7.
+/// A number with at most this many significant digits and without trailing zeros. Numbers below 0.001, from 1e7 on, and those with
+/// more than `digits` + 1 digits before the decimal point have an exponent.
 pub fn significant(value: f64, digits: usize) -> String {
     // Rounded in decimal, then printed in the shortest form that reads back equal.
     let rounded = format!("{value:.*e}", digits - 1);

@@ -324,7 +324,7 @@ fn compare(
         let values = reference.rows.iter().map(|row| row.values[k].abs());
         values.fold(f64::MIN_POSITIVE, f64::max)
     };
-    // A monitor that is only round-off next to another of its kind has no scale of its own.
+    // Where a monitor is only round-off, its largest value is no scale: the largest of its kind is used.
     let scale = |k: usize, name: &String| {
         let of_kind = columns.iter().filter(|(_, own)| kind(own) == kind(name));
         let most = of_kind.map(|(k, _)| largest(*k)).fold(0.0, f64::max);

@@ -165,7 +165,7 @@ fn pages(asked: &Asked) -> ExitCode {
         page.faults.iter().for_each(|fault| println!("  {fault}"));
     }
     println!(
-        "{failed} scenes fail; the pages of {ended} show that no valid state is ahead, and {faulty} pages have faults"
+        "{failed} scenes fail; the pages of {ended} show a limit load or that no modes are consistent, and {faulty} pages have faults"
     );
     ExitCode::from(u8::from(faulty > 0))
 }

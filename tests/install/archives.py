@@ -53,6 +53,7 @@ def fill(name, folder):
         shutil.copy(program(name), folder)
         # The program for Windows does not run here, and its completions and pages are the same.
         here = program("gnu" if name == "windows" else name)
+        (folder / "completions").mkdir()
         call(here, "man", "-o", folder / "man1")
         for shell, file in [("bash", "stickslip.bash"), ("fish", "stickslip.fish"), ("zsh", "_stickslip"), ("powershell", "stickslip.ps1")]:
             call(here, "completions", shell, "-o", folder / "completions" / file)
@@ -106,7 +107,7 @@ def main():
     for name in names:
         with tempfile.TemporaryDirectory(prefix="stickslip-") as place:
             folder = Path(place) / f"stickslip-{VERSION}-{TARGETS.get(name, 'page')}"
-            (folder / "completions").mkdir(parents=True) if name != "page" else folder.mkdir()
+            folder.mkdir()
             fill(name, folder)
             archive = pack(folder, name, options.out)
             print(f"packed      {archive.name}: {archive.stat().st_size / 1e6:.2f} MB", flush=True)

@@ -1,8 +1,7 @@
 #!/usr/bin/env python3
 """Installs the program as a stranger would, and takes it for a walk where nothing else is.
 
-The packages are packed and unpacked far from the repository; the program is installed from there (`cargo install`), and so from
-nothing but what is in them. Then the walk of five minutes and more of the manual is done in a folder that holds the
+The committed sources are copied far from the repository, and the program is installed from there (`cargo install --path .`). Then the walk of five minutes and more of the manual is done in a folder that holds the
 program alone: where this is run as root, the folder is all that the program sees (chroot), with the libraries that the
 program is linked with; else it is an empty folder, an empty home and a path with nothing else.
 
@@ -14,7 +13,6 @@ is a cluster's build. What is built is kept below CARGO_TARGET_DIR, if that is s
 
 import argparse
 import fcntl
-import json
 import os
 import pty
 import re
@@ -36,41 +34,18 @@ def say(text):
     print(text, flush=True)
 
 
-def cargo(*arguments, **more):
-    subprocess.run(["cargo", *arguments], check=True, **more)
-
-
-def packed(place):
-    """Packs all packages, unpacks them there, and gives their folders."""
-    cargo("package", "--workspace", "--no-verify", "--allow-dirty", "--quiet", cwd=TOP)
-    metadata = subprocess.run(
-        ["cargo", "metadata", "--no-deps", "--format-version", "1"], cwd=TOP, check=True, capture_output=True
-    )
-    metadata = json.loads(metadata.stdout)
-    folders = {}
-    for package in metadata["packages"]:
-        if package["publish"] == []:
-            continue
-        name, version = package["name"], package["version"]
-        file = Path(metadata["target_directory"]) / "package" / f"{name}-{version}.crate"
-        shutil.unpack_archive(file, place, format="gztar")
-        folders[name] = place / f"{name}-{version}"
-        count = sum(1 for path in folders[name].rglob("*") if path.is_file())
-        say(f"packed      {file.name}: {count} files, {file.stat().st_size / 1e6:.2f} MB")
-    return folders
-
-
-def installed(folders, root, options):
-    """Installs the program from the unpacked packages."""
-    arguments = ["install", "--path", str(folders["stickslip"]), "--root", str(root), "--quiet"]
-    for name, folder in folders.items():
-        if name != "stickslip":
-            arguments += ["--config", f'patch.crates-io.{name}.path="{folder}"']
+def installed(place, options):
+    """Installs the program from a copy of what is committed."""
+    sources, root = place / "sources", place / "root"
+    sources.mkdir()
+    archive = subprocess.run(["git", "archive", "HEAD"], cwd=TOP, check=True, capture_output=True).stdout
+    subprocess.run(["tar", "-x"], cwd=sources, input=archive, check=True)
+    arguments = ["install", "--path", ".", "--root", str(root), "--locked", "--quiet"]
     arguments += ["--debug"] if options.debug else ["--profile", "dist"]
     if options.features is not None:
         arguments += ["--no-default-features", "--features", options.features]
     begin = time.monotonic()
-    cargo(*arguments, cwd=root.parent)
+    subprocess.run(["cargo", *arguments], cwd=sources, check=True)
     program = root / "bin" / "stickslip"
     size = program.stat().st_size
     say(f"installed   {size / 1e6:.2f} MB in {time.monotonic() - begin:.0f} s")
@@ -261,7 +236,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--debug", action="store_true")
     parser.add_argument("--features")
-    parser.add_argument("--program", help="takes a walk with this program, and packs and builds nothing")
+    parser.add_argument("--program", help="takes a walk with this program, and builds nothing")
     options = parser.parse_args()
     features = ["tui", "plot"] if options.features is None else options.features.split(",")
     with tempfile.TemporaryDirectory(prefix="stickslip-") as folder:
@@ -269,8 +244,7 @@ def main():
         if options.program:
             program = Path(options.program)
         else:
-            (folder / "packages").mkdir()
-            program = installed(packed(folder / "packages"), folder / "root", options)
+            program = installed(folder, options)
         place = Place(folder / "alone", program)
         say(place.run("--version", "--verbose")[0].rstrip())
         place.starts("tui" in features)

@@ -13,20 +13,15 @@ use stickslip::step::stepper::Stepper;
 /// Minor iterations after which a run is given up.
 const MOST: usize = 60_000;
 
-/// What a page shows to be the end of a run: there is no valid state ahead.
-const ENDS: [&str; 4] = [
-    "limit load: ",
-    " is inverted: ",
-    " softens below ",
-    "so no iteration can find any",
-];
+/// Causes that no other iteration can remove: the path ends, or no modes are consistent.
+const ENDS: [&str; 2] = ["limit load: ", "so no iteration can find any"];
 
 /// The page of a failure, checked.
 pub struct CheckedPage {
     pub faults: Vec<String>,
-    /// The first cause, or the first that shows that no valid state is ahead.
+    /// The first cause; one of [`ENDS`] if there is one.
     pub cause: String,
-    /// Whether there is such a cause.
+    /// Whether there is one of [`ENDS`].
     pub ends: bool,
 }
 

@@ -258,7 +258,7 @@ fn the_end_of_the_path_is_named_where_contacts_change_or_an_element_is_inverted(
         (
             "tests/findings/path-ends-in-an-inverted-element.ron",
             "equilibrium exists on this path up to load ",
-            "beyond it element 1 of q at ",
+            "beyond it every step tried inverts element 1 of q at ",
         ),
     ] {
         let (code, reason, table) = told(&[file]);

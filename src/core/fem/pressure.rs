@@ -20,12 +20,15 @@ use crate::fem::element::{Element, Previous};
 use crate::fem::material::Material;
 use crate::linalg::Pattern;
 use crate::model::{BodyKind, Dofs, Factor, Model, PressedFace, Update};
+use std::cell::RefCell;
 use std::f64::consts::TAU;
 
 /// All pressures of a scene, face by face.
 pub struct Pressures {
     faces: Vec<PressedElement>,
     expanding: Vec<ExpandingElement>,
+    /// Displacements, force and tangent of an element that expands.
+    work: RefCell<Vec<f64>>,
 }
 
 /// An element of a body that expands.
@@ -78,6 +81,7 @@ impl Pressures {
         Pressures {
             faces: faces.map(of).collect(),
             expanding: expanding(model),
+            work: RefCell::default(),
         }
     }
 
@@ -129,10 +133,11 @@ impl Pressures {
                 }
             }
         }
+        let work = &mut *self.work.borrow_mut();
         for element in &self.expanding {
             let expansion = &model.pressures[element.pressure];
             let size = expansion.value * factor(&expansion.scale);
-            let (force, _) = element.response(u);
+            let (force, _) = element.response(u, work);
             for (&dof, part) in element.dofs.iter().zip(force) {
                 add(dof, -size * part);
             }
@@ -161,10 +166,11 @@ impl Pressures {
                 }
             });
         }
+        let work = &mut *self.work.borrow_mut();
         for element in self.expanding.iter().filter(|element| !element.small) {
             let expansion = &model.pressures[element.pressure];
             let size = expansion.value * expansion.scale.at(load_factor);
-            let (_, tangent) = element.response(u);
+            let (_, tangent) = element.response(u, work);
             let entries = element.slots.iter().zip(tangent).enumerate();
             for (k, (slot, value)) in entries {
                 let (row, column) = (k / element.dofs.len(), k % element.dofs.len());
@@ -205,18 +211,24 @@ fn expanding(model: &Model) -> Vec<ExpandingElement> {
 }
 
 impl ExpandingElement {
-    /// Internal force and tangent for an expansion of 1, at displacements u of the scene.
-    fn response(&self, u: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    /// Internal force for an expansion of 1 at displacements u of the scene, in `work`, and its tangent.
+    fn response<'a>(&self, u: &[f64], work: &'a mut Vec<f64>) -> (&'a [f64], &'a [f64]) {
         let count = self.dofs.len();
-        let moved = |&dof: &usize| if self.small { 0.0 } else { u[dof] };
-        let own: Vec<f64> = self.dofs.iter().map(moved).collect();
-        let (mut force, mut tangent) = (vec![0.0; count], vec![0.0; count * count]);
+        work.clear();
+        work.extend(
+            self.dofs
+                .iter()
+                .map(|&dof| if self.small { 0.0 } else { u[dof] }),
+        );
+        work.resize(count * (count + 2), 0.0);
+        let (own, rest) = work.split_at_mut(count);
+        let (force, tangent) = rest.split_at_mut(count);
         let past = Previous {
-            u: &own,
+            u: own,
             history: &[],
         };
-        self.element.add(&past, &own, &mut force, &mut tangent);
-        self.element.mirror(&mut tangent);
+        self.element.add(&past, own, force, tangent);
+        self.element.mirror(tangent);
         (force, tangent)
     }
 }
@@ -302,6 +314,7 @@ mod tests {
                 points: samples(m),
             }],
             expanding: Vec::new(),
+            work: RefCell::default(),
         }
     }
 
@@ -368,7 +381,9 @@ mod tests {
                     slots: Vec::new(),
                     pressure: 0,
                 };
-                element.response(u)
+                let mut work = Vec::new();
+                let (force, tangent) = element.response(u, &mut work);
+                (force.to_vec(), tangent.to_vec())
             };
             let u: Vec<f64> = (0..8).map(|k| 0.05 * ((k * 7 % 5) as f64 - 2.0)).collect();
             let (force, tangent) = whole(&u, material);

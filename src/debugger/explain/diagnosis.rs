@@ -14,8 +14,7 @@ use stickslip_core::interface::census::{self, Census, MOST, MOST_SEARCHED, searc
 use stickslip_core::interface::minor_history::Cycle;
 use stickslip_core::interface::problem::{AssumedMode, Condition, InterfaceProblem, NodeAnswer};
 use stickslip_core::interface::trials::Trials;
-use stickslip_core::model::{BoundUpdate, SlipCount};
-use stickslip_core::model::{Mode, Model};
+use stickslip_core::model::{BoundUpdate, Mode, Model, SlipCount};
 use stickslip_core::strategy::method;
 use stickslip_core::words;
 use stickslip_scene::number::sig4;
@@ -688,7 +687,10 @@ pub fn condition_words(condition: Condition) -> &'static str {
 }
 
 fn way_words(way: FrozenChange, settles: bool) -> String {
-    let ends = ["does not settle", "settles"][usize::from(settles)];
+    let ends = match settles {
+        true => "settles",
+        false => "does not settle",
+    };
     match way {
         FrozenChange::Answer(k) => {
             format!("tried: starting from consistent state {}: {ends}", k + 1)

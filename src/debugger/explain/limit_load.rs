@@ -2,7 +2,7 @@
 //! or where the equilibrium path has its largest load.
 //!
 //! **Largest load.** From the last equilibrium, follows the path by arc length until the load falls, the path ends at a change of
-//! contacts, or an element is turned inside out.
+//! contacts, or every further step inverts an element.
 //!
 //! **Loose body.** Repeats the failed increment in smaller steps ([`super::load_limit_probe`]). In the last equilibrium, computes the remaining
 //! resistance of each contact of the body against the free motion. With v the relative velocity, friction resists with at
@@ -63,7 +63,7 @@ enum PathEnd {
     Falls,
     /// These contacts change, and no modes continue the path.
     Ends(Arc<Vec<Change>>),
-    /// An element is inverted.
+    /// Every step inverts an element.
     Inverts(PointDeformation),
 }
 
@@ -134,7 +134,7 @@ fn words((load, how): &(f64, PathEnd), model: &Model) -> String {
             )
         }
         PathEnd::Inverts(point) => format!(
-            "limit load: equilibrium exists on this path up to load {load}; beyond it {} is inverted",
+            "limit load: equilibrium exists on this path up to load {load}; beyond it every step tried inverts {}",
             strain::place(model, point)
         ),
     }

@@ -497,12 +497,6 @@ impl PageBuilder {
             self.facts.extend(lines);
         }
         self.facts.append(&mut self.found.facts);
-        if !self.found.fails {
-            // The head is all that is known where nothing else is.
-            let explained = self.facts.iter().any(|fact| fact.part == Part::Why);
-            let part = if explained { Part::Details } else { Part::Why };
-            self.facts.push(Fact::new(part, self.found.head.clone()));
-        }
     }
 
     /// The load at which friction is used up or contact is lost, or the largest one, if that is the cause: then it comes first, except
@@ -526,8 +520,6 @@ impl PageBuilder {
             Some((_, true))
         );
         let place = usize::from(has_left_range).min(self.facts.len());
-        let unexplained = self.facts.iter_mut().filter(|f| f.text == self.found.head);
-        unexplained.for_each(|fact| fact.part = Part::Details);
         self.facts.insert(place, Fact::why(text));
     }
 
@@ -569,10 +561,17 @@ impl PageBuilder {
             fails: true,
             ..self.found.clone()
         };
+        let mut facts = self.facts.clone();
+        if !self.found.fails && !found.head.is_empty() {
+            // The head of the examination is all that is known where nothing else is.
+            let explained = facts.iter().any(|fact| fact.part == Part::Why);
+            let part = if explained { Part::Details } else { Part::Why };
+            facts.insert(0, Fact::new(part, &found.head));
+        }
         DiagnosisPage {
             tries: self.tries(),
             going_on: going_on.to_owned(),
-            ..DiagnosisPage::with_facts(self.what.clone(), self.facts.clone(), found)
+            ..DiagnosisPage::with_facts(self.what.clone(), facts, found)
         }
     }
 

@@ -90,8 +90,8 @@ impl RemedyInput {
     pub fn scene_entry(&self) -> Option<String> {
         match self {
             RemedyInput::Set(path, value) => {
-                let (group, key) = path.split_once('.')?;
-                Some(format!("{group}: ({key}: {value}),"))
+                let key = path.strip_prefix("settings.")?;
+                Some(format!("settings: ({key}: {value}),"))
             }
             RemedyInput::Increment(size) => Some(format!(
                 "history: (increment: {}),",
@@ -156,11 +156,10 @@ impl Remedy {
 
     /// A tenth and a hundredth of a parameter of an attached solver that changes only how it iterates.
     pub fn tuned(parameter: &Parameter) -> Vec<Remedy> {
-        let Value::Number(now) = parameter.value else {
-            return Vec::new();
+        let now = match parameter.value {
+            Value::Number(now) if parameter.tunes && now != 0.0 => now,
+            _ => return Vec::new(),
         };
-        let value = |part: f64| Some(now / part).filter(|_| parameter.tunes && now != 0.0);
-        let values = [10.0, 100.0].into_iter().filter_map(value);
         let remedy = |value: f64| Remedy {
             kind: RemedyKind::Tuned,
             label: format!("{} {}", parameter.name, number::shortest(value)),
@@ -170,7 +169,7 @@ impl Remedy {
                 value: Value::Number(value),
             }],
         };
-        values.map(remedy).collect()
+        vec![remedy(now / 10.0), remedy(now / 100.0)]
     }
 
     /// The remedy of a kind at a state; `None` if it would change nothing or does not apply.
