@@ -4,9 +4,7 @@
 use crate::explain::core::{Core, core, cycle};
 use crate::explain::facts::{Fact, Part};
 use crate::explain::influence::{Influence, influences};
-use crate::explain::names;
-use crate::explain::proven;
-use crate::explain::tested;
+use crate::explain::{names, proven, tested};
 use stickslip_core::contact::record::ContactRecord;
 use stickslip_core::contact::state::ContactState;
 use stickslip_core::contact::table2::{Rule, TestedQuantity};
