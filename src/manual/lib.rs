@@ -39,7 +39,7 @@ macro_rules! pages {
         )*
 
         /// All pages, in reading order.
-        pub const PAGES: &[Page] = &[
+        pub static PAGES: &[Page] = &[
             $(Page { topic: $topic, about: $about, file: embedded!($topic, $file) }),*
         ];
     };

@@ -11,7 +11,7 @@ macro_rules! scenes {
 }
 
 /// In display order.
-const SCENES: &[EmbeddedFile] = scenes![
+static SCENES: &[EmbeddedFile] = scenes![
     "":
     "01-pinned-beam-rough-floor",
     "02-two-cantilevers-smooth",

@@ -40,7 +40,7 @@ use stickslip_scene::{Scene, increments};
 
 /// Name of the built-in list.
 pub const BUILTIN: &str = "benchmarks";
-const TABLE: EmbeddedFile = embedded!(BUILTIN, "../../problems/benchmarks/table.ron");
+static TABLE: EmbeddedFile = embedded!(BUILTIN, "../../problems/benchmarks/table.ron");
 /// Default of [`Benchmark::drift`]: other processors round differently.
 const DRIFT: f64 = 1e-8;
 /// Largest distance between the end of an increment and a given load factor.

@@ -4,7 +4,7 @@ use stickslip_scene::embedded::{self, EmbeddedFile};
 use stickslip_scene::embedded_all;
 
 /// In the order in which they are listed.
-const STUDIES: &[EmbeddedFile] = embedded_all![
+static STUDIES: &[EmbeddedFile] = embedded_all![
     "../../problems/studies/",
     ".ron",
     "fig-08-increment",

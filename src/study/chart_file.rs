@@ -69,7 +69,7 @@ pub struct Series {
 }
 
 /// Charts of built-in scenes, by the scene's name.
-const CHARTS: &[EmbeddedFile] = embedded_all![
+static CHARTS: &[EmbeddedFile] = embedded_all![
     "../../problems/charts/",
     ".ron",
     "01-pinned-beam-rough-floor",

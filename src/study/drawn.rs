@@ -22,8 +22,9 @@ pub enum Face {
     /// DejaVu Sans.
     #[default]
     Sans,
-    /// DejaVu Sans Mono, with the glyphs of DejaVu Sans where it has none.
-    Mono,
+    /// [`pen::mono`](crate::pen::mono), with the glyphs of DejaVu Sans where it has none. Whoever draws with it passes its bytes,
+    /// so that a program that does not, such as the page, does not contain them.
+    Mono(&'static [u8]),
 }
 
 /// A shape.

@@ -38,7 +38,7 @@ pub struct ReferencePoint {
 }
 
 /// The built-in references, by scene.
-const TABLES: &[EmbeddedFile] = embedded_all![
+static TABLES: &[EmbeddedFile] = embedded_all![
     "../../problems/references/",
     ".csv",
     "01-pinned-beam-rough-floor",

@@ -150,7 +150,7 @@ fn letter(shapes: &mut Vec<Shape>, (x, y): (f64, f64), cell: &Cell, palette: &Pa
             colour,
             anchor: Anchor::Left,
             upright: false,
-            face: Face::Mono,
+            face: Face::Mono(pen::mono()),
         });
     }
 }

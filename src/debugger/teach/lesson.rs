@@ -139,7 +139,7 @@ const MOST_CHOICES: usize = 9;
 const FARTHEST: u32 = 100;
 
 /// The built-in lessons in teaching order.
-const LESSONS: &[EmbeddedFile] = embedded_all![
+static LESSONS: &[EmbeddedFile] = embedded_all![
     "../../problems/lessons/",
     ".ron",
     "modes",
@@ -169,7 +169,7 @@ const LESSONS: &[EmbeddedFile] = embedded_all![
 ];
 
 /// The built-in exercise sheets, one for each session of the course.
-const SHEETS: &[EmbeddedFile] = embedded_all![
+static SHEETS: &[EmbeddedFile] = embedded_all![
     "../../problems/exercises/",
     ".ron",
     "sheet-1",
@@ -181,7 +181,7 @@ const SHEETS: &[EmbeddedFile] = embedded_all![
 ];
 
 /// The built-in recorded exchanges.
-const EXCHANGES: &[EmbeddedFile] =
+static EXCHANGES: &[EmbeddedFile] =
     embedded_all!["../../problems/lessons/", ".exchange", "kratos-walk"];
 
 /// All built-in lessons, in teaching order.

@@ -9,6 +9,11 @@ pub fn ready() -> Result<(), PlotError> {
     Err(PlotError::NotBuilt)
 }
 
+/// The file of a monospace font: empty.
+pub fn mono() -> &'static [u8] {
+    &[]
+}
+
 /// Width of a text.
 ///
 /// # Errors

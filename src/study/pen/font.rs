@@ -10,31 +10,24 @@ pub(super) const EM: f64 = 1.0 / 1.24;
 /// A font that is read once.
 type ReadFont = OnceLock<Option<FontRef<'static>>>;
 
-/// The built-in font of a face that has all glyphs of a text; DejaVu Sans if there is none.
+/// The font of a face if it has all glyphs of a text; otherwise DejaVu Sans.
 pub(super) fn font(face: Face, text: &str) -> Result<&'static FontRef<'static>, PlotError> {
     static SANS: ReadFont = OnceLock::new();
     static MONO: ReadFont = OnceLock::new();
-    let sans = || read(&SANS, dejavu::sans::regular);
-    let mono = || read(&MONO, dejavu::sans_mono::regular);
-    match face {
-        Face::Sans => sans(),
-        Face::Mono => {
-            let font = mono()?;
-            let lacks = |c: char| font.glyph_id(c) == GlyphId(0);
-            if text.chars().any(lacks) {
-                sans()
-            } else {
-                Ok(font)
-            }
+    if let Face::Mono(bytes) = face {
+        let font = read(&MONO, bytes)?;
+        if text.chars().all(|c| font.glyph_id(c) != GlyphId(0)) {
+            return Ok(font);
         }
     }
+    read(&SANS, dejavu::sans::regular())
 }
 
 fn read(
     font: &'static ReadFont,
-    bytes: fn() -> &'static [u8],
+    bytes: &'static [u8],
 ) -> Result<&'static FontRef<'static>, PlotError> {
-    let font = font.get_or_init(|| FontRef::try_from_slice(bytes()).ok());
+    let font = font.get_or_init(|| FontRef::try_from_slice(bytes).ok());
     font.as_ref()
         .ok_or_else(|| PlotError::new("its font cannot be read"))
 }

@@ -11,6 +11,11 @@ pub use bitmap::png;
 pub use font::width_of;
 pub use svg::svg;
 
+/// The file of DejaVu Sans Mono.
+pub fn mono() -> &'static [u8] {
+    dejavu::sans_mono::regular()
+}
+
 /// Checks whether this build can draw.
 ///
 /// # Errors If it cannot; never with the feature `plot`.

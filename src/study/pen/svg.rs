@@ -38,7 +38,7 @@ pub fn svg(shapes: &[Shape], (width, height): (f64, f64)) -> Result<String, Plot
                 };
                 let family = match face {
                     Face::Sans => "sans-serif",
-                    Face::Mono => "monospace",
+                    Face::Mono(_) => "monospace",
                 };
                 let (size, colour, words) = (short(size * EM), hex(*colour), escaped(words));
                 writeln!(
