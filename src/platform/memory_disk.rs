@@ -57,9 +57,8 @@ impl Disk {
     }
 }
 
-/// Stores a file from the page.
-pub fn put(path: &Path, bytes: Vec<u8>) {
-    let modified = crate::clock::since_1970();
+/// Stores a file from the page, last changed at this time since 1970.
+pub fn put(path: &Path, bytes: Vec<u8>, modified: Duration) {
     let content = Content { bytes, modified };
     disk().files.insert(plain(path), content);
 }

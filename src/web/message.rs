@@ -38,6 +38,8 @@ pub enum Request {
         path: String,
         /// Content.
         content: Content,
+        /// When it was last changed, in milliseconds since 1970.
+        modified: f64,
     },
     /// The settings of a link, in order: `lesson`, `scene` or `journal`, and paths of the scene with values.
     Open(Vec<(String, String)>),

@@ -7,6 +7,7 @@ use crate::trace::trace;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use std::path::Path;
+use std::time::Duration;
 use stickslip_debugger::action::Colours;
 use stickslip_debugger::record::journal;
 use stickslip_debugger::session::Session;
@@ -58,7 +59,14 @@ impl Page {
                 };
                 self.input(&Event::Mouse(MouseEvent { kind, column, row }));
             }
-            Request::File { path, content } => memory_disk::put(Path::new(&path), content.into()),
+            Request::File {
+                path,
+                content,
+                modified,
+            } => {
+                let modified = Duration::try_from_secs_f64(modified / 1e3).unwrap_or_default();
+                memory_disk::put(Path::new(&path), content.into(), modified);
+            }
             Request::Open(settings) => self.open(settings),
             Request::Pictures { settings, part } => {
                 self.update.pictures = Some(match &self.debugger.session {

@@ -59,7 +59,7 @@ function keep(path, content) {
   const date = (name) => name.match(/\d{8}-\d{6}/)?.[0] ?? '';
   for (;;) {
     try {
-      localStorage.setItem(path, JSON.stringify(content));
+      localStorage.setItem(path, JSON.stringify({ modified: Date.now(), content }));
       return;
     } catch (error) {
       const journals = Object.keys(localStorage).filter((key) => key.startsWith(`${KEPT}journals/`) && key !== path);
@@ -206,7 +206,7 @@ async function take(files) {
     } catch {
       content = Array.from(bytes);
     }
-    send({ file: { path: file.name, content } });
+    send({ file: { path: file.name, content, modified: file.lastModified } });
   }
   if (files.length > 0) send({ open: [['journal', files[files.length - 1].name]] });
 }
@@ -227,8 +227,11 @@ function follow() {
   if (settings.length > 0) send({ open: settings });
 }
 
-for (const [path, content] of Object.entries(localStorage)) {
-  if (path.startsWith(KEPT)) send({ file: { path, content: JSON.parse(content) } });
+for (const [path, text] of Object.entries(localStorage)) {
+  if (!path.startsWith(KEPT)) continue;
+  // Earlier pages stored the content alone.
+  const kept = JSON.parse(text);
+  send({ file: { path, content: kept.content ?? kept, modified: kept.modified ?? 0 } });
 }
 const light = window.matchMedia('(prefers-color-scheme: light)');
 send({ background: { light: light.matches } });

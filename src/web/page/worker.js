@@ -6,7 +6,7 @@ const waiting = [];
 const encoder = new TextEncoder();
 const decoder = new TextDecoder();
 
-const imports = { env: { now: () => Date.now() + performance.now() % 1 } };
+const imports = { env: { now: () => performance.timeOrigin + performance.now() } };
 
 function output(length) {
   const { memory, output } = program.exports;
