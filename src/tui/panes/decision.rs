@@ -130,17 +130,19 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         pushes(slave, record, view, theme)
     };
     let room = (inner.height as usize).saturating_sub(all.len());
-    let zoomed = room > MEASURED + pushes.len();
+    let width = usize::from(inner.width);
+    let measured = record.map_or(Vec::new(), |record| {
+        measured(record, slave, width, view, theme)
+    });
+    let zoomed = !measured.is_empty() && room > measured.len() + 1 + pushes.len();
     if !zoomed && room > 1 && pushes.len() > 1 {
         all.push(Line::default());
         let least = usize::from(room < 4);
         all.extend(pushes.iter().skip(least).cloned());
     }
-    if let Some(record) = record
-        && zoomed
-    {
+    if zoomed {
         all.push(Line::default());
-        all.extend(measured(record, slave, view, theme));
+        all.extend(measured);
         all.push(Line::default());
         all.extend(pushes);
     }
@@ -218,11 +220,18 @@ fn deed(push: &NodePush, view: &View) -> String {
     }
 }
 
-/// Lines of [`measured`], including pressure and shear.
-const MEASURED: usize = 15;
+/// Widths of the names and values in [`measured`].
+const NAME: usize = 13;
+const VALUE: usize = 20;
 
 /// All quantities of the node in this minor iteration, with explanations; shown if there is room.
-fn measured(record: &ContactRecord, slave: usize, view: &View, theme: &Theme) -> paint::Lines {
+fn measured(
+    record: &ContactRecord,
+    slave: usize,
+    width: usize,
+    view: &View,
+    theme: &Theme,
+) -> paint::Lines {
     let round_off = view.round_off();
     let long = |value| view.long(value);
     let signed = |value: f64| {
@@ -319,16 +328,23 @@ fn measured(record: &ContactRecord, slave: usize, view: &View, theme: &Theme) ->
         ]
     });
     let heading = Line::styled(" Values of this minor iteration", theme.heading);
-    let row = |(name, value, meaning): (&str, String, &'static str)| {
-        Line::from(vec![
-            Span::styled(format!("   {name:<13}"), theme.key),
-            Span::raw(format!("{value:<20}")),
-            Span::styled(meaning, theme.faint),
-        ])
+    let row = |(mut name, mut value, meaning): (&'static str, String, &str)| {
+        let meaning = paint::wrap(meaning, width.saturating_sub(NAME + VALUE + 4));
+        let part = |part: String| {
+            Line::from(vec![
+                Span::styled(
+                    format!("   {:<NAME$}", std::mem::take(&mut name)),
+                    theme.key,
+                ),
+                Span::raw(format!("{:<VALUE$}", std::mem::take(&mut value))),
+                Span::styled(part, theme.faint),
+            ])
+        };
+        meaning.into_iter().map(part).collect::<Vec<_>>()
     };
     [heading]
         .into_iter()
-        .chain(rows.into_iter().chain(of_area).map(row))
+        .chain(rows.into_iter().chain(of_area).flat_map(row))
         .collect()
 }
 

@@ -145,6 +145,15 @@ for (const button of document.querySelectorAll('#keys button')) {
   });
 }
 
+// Where there is no keyboard: a line such as `:set friction.angle 20`, or the answer to a question.
+document.getElementById('line').addEventListener('submit', (event) => {
+  event.preventDefault();
+  const [text] = event.target.elements;
+  for (const letter of text.value) send({ key: NAMES[letter] ?? letter });
+  send({ key: 'Enter' });
+  text.value = '';
+});
+
 const pictures = document.getElementById('pictures');
 const [angle, part, increment] = pictures.querySelectorAll('input');
 const problem = document.getElementById('problem');
