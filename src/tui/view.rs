@@ -1,5 +1,6 @@
 //! The data that the panes draw: a read-only view of a session.
 
+use std::borrow::Cow;
 use stickslip_core::contact::record::{ContactRecord, Forced};
 use stickslip_core::fem::deformation::PointDeformation;
 use stickslip_core::linear::norms::Norms;
@@ -8,11 +9,12 @@ use stickslip_core::step::event::{Event, Outcome, Position};
 use stickslip_core::step::intervene::Intervention;
 use stickslip_core::step::solver::Capabilities;
 use stickslip_debugger::action::Context;
+use stickslip_debugger::explain::conditions::{self, Support};
 use stickslip_debugger::explain::influence::NodePush;
 use stickslip_debugger::explain::outline::{self, Projection};
 use stickslip_debugger::explain::page::DiagnosisPage;
 use stickslip_debugger::explain::remedies::RemedyTrial;
-use stickslip_debugger::explain::round_off::RoundOff;
+use stickslip_debugger::explain::round_off::{self, RoundOff};
 use stickslip_debugger::history::frame::Frame;
 use stickslip_debugger::history::strip::Strip;
 use stickslip_debugger::history::tree::Tree;
@@ -186,8 +188,19 @@ impl<'a> View<'a> {
     /// Which of the shown values are round-off; none at the start.
     pub fn round_off(&self) -> RoundOff {
         self.event().map_or(RoundOff::default(), |event| {
-            RoundOff::new(self.model, &event.before)
+            let reach = self
+                .tree
+                .map_or_else(|| round_off::reach(self.model), Tree::reach);
+            RoundOff::with_reach(reach, &event.before)
         })
+    }
+
+    /// The supports of the scene.
+    pub fn supports(&self) -> Cow<'a, [Support]> {
+        match self.tree {
+            Some(tree) => Cow::Borrowed(tree.supports()),
+            None => Cow::Owned(conditions::supports(self.model)),
+        }
     }
 
     /// Name of a slave node.

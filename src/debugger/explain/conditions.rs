@@ -25,11 +25,12 @@ pub struct ConditionArrow {
     pub along: Point,
 }
 
-/// The marks of a state.
+/// A supported node, and whether x, y and its rotation are restrained.
+pub type Support = (usize, [bool; 3]);
+
+/// The marks of a state, besides its supports.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Conditions {
-    /// Supported nodes, with the restrained components x, y and rotation.
-    pub supports: Vec<(usize, [bool; 3])>,
     /// Forces, pressures and prescribed displacements.
     pub arrows: Vec<ConditionArrow>,
     /// Moments and prescribed rotations: node, kind, and whether it turns anticlockwise.
@@ -73,7 +74,6 @@ pub fn conditions(model: &Model, load_factor: f64, place: &dyn Fn(usize) -> Poin
     found
         .arrows
         .extend(scaled(pressures(model, load_factor, end, place)));
-    found.supports = supports(model);
     found
 }
 
@@ -126,7 +126,7 @@ fn scaled(mut arrows: Vec<ConditionArrow>) -> Vec<ConditionArrow> {
 }
 
 /// Nodes of bodies with restrained components.
-fn supports(model: &Model) -> Vec<(usize, [bool; 3])> {
+pub fn supports(model: &Model) -> Vec<Support> {
     let mut nodes: Vec<usize> = model
         .bodies
         .iter()

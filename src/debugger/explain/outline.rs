@@ -249,11 +249,11 @@ const TO_SCALE: f64 = 0.015;
 /// Largest automatic magnification.
 const MOST: f64 = 1e6;
 
-/// A round magnification that makes the largest of some displacements visible; 1 if it is visible to scale, or too small to be made
-/// visible.
+/// A round magnification that makes the largest of the outlines' displacements visible; 1 if it is visible to scale, or too small to
+/// be made visible.
 pub fn magnification<'a>(model: &Model, displacements: impl Iterator<Item = &'a [f64]>) -> f64 {
-    let moved = displacements
-        .flat_map(|u| (0..model.nodes.len()).map(move |node| displacement(model, u, node)));
+    let outer = || model.bodies.iter().flat_map(outer_nodes);
+    let moved = displacements.flat_map(|u| outer().map(move |node| displacement(model, u, node)));
     let largest = moved.filter(|size| size.is_finite()).fold(0.0, f64::max);
     let part = largest / model.length;
     match part < TO_SCALE && SEEN / part <= MOST {

@@ -24,15 +24,24 @@ pub struct RoundOff {
     pub length: f64,
 }
 
+/// The largest length of a scene: its size or its largest coordinate.
+pub fn reach(model: &Model) -> f64 {
+    let coordinates = model.nodes.iter().flat_map(|node| node.at);
+    coordinates.fold(model.length, |m, x| m.max(x.abs()))
+}
+
 impl RoundOff {
     /// The limits for a scene with these norms.
     pub fn new(model: &Model, norms: &Norms) -> RoundOff {
+        RoundOff::with_reach(reach(model), norms)
+    }
+
+    /// The limits for a scene with this [`reach`] and these norms.
+    pub fn with_reach(reach: f64, norms: &Norms) -> RoundOff {
         let ulps = TIMES * f64::EPSILON;
-        let coordinates = model.nodes.iter().flat_map(|node| node.at);
-        let largest = coordinates.fold(model.length, |m, x| m.max(x.abs()));
         RoundOff {
             force: norms.scale * norms.noise.max(ulps),
-            length: ulps * largest,
+            length: ulps * reach,
         }
     }
 

@@ -11,6 +11,8 @@
 //! whole frame before it when needed. The root, the frame at the cursor and the tips of all branches are always
 //! whole. [`Budget::branches`] limits those frames and the strips; beyond it no new branch can start.
 
+use crate::explain::conditions::{self, Support};
+use crate::explain::round_off;
 use crate::history::frame::Frame;
 use crate::history::strip::{PointKind, Strip};
 use std::collections::HashMap;
@@ -89,6 +91,9 @@ pub struct Branch {
 #[derive(Debug)]
 pub struct Tree {
     model: Arc<Model>,
+    /// What screens need of the model in each frame, and take from all of its nodes.
+    reach: f64,
+    supports: Vec<Support>,
     line: Points,
     branches: Vec<Branch>,
     current: usize,
@@ -123,6 +128,8 @@ impl Tree {
         let mut ledger = Ledger::default();
         ledger.add(&frame);
         Tree {
+            reach: round_off::reach(&model),
+            supports: conditions::supports(&model),
             model,
             line: Points {
                 frames: vec![frame],
@@ -145,6 +152,16 @@ impl Tree {
     /// The scene.
     pub fn model(&self) -> &Arc<Model> {
         &self.model
+    }
+
+    /// The largest length of the scene ([`round_off::reach`]).
+    pub fn reach(&self) -> f64 {
+        self.reach
+    }
+
+    /// The supports of the scene.
+    pub fn supports(&self) -> &[Support] {
+        &self.supports
     }
 
     /// Frames from the root to the tip of the current branch.

@@ -9,7 +9,9 @@ use super::linear;
 use crate::format::error::{AtPath, Fault, Path, at, bail, fault, none_called};
 use crate::format::spec::{BodySpec, Material, Point, Region, Spec};
 use std::collections::HashSet;
-use stickslip_core::model::{Beam, Body, BodyKind, Elastic, Node, Solid, SolidElement, boundary};
+use stickslip_core::model::{
+    Beam, Body, BodyKind, Elastic, Node, Solid, SolidElement, boundary, seams,
+};
 use stickslip_core::model::{Law, Plane, Update};
 
 /// Rejects materials with invalid stiffnesses.
@@ -288,6 +290,8 @@ fn solid(
         materials: vec![continuum(&here.then("material"), spec, of)?],
         material_names: vec![of.clone()],
         edges,
+        seams: Vec::new(),
+        largest: 0.0,
         elements: elements.collect(),
     };
     for (k, region) in regions.iter().enumerate() {
@@ -299,6 +303,12 @@ fn solid(
             &mut made,
         )?;
     }
+    made.seams = seams(&made.elements);
+    let diagonals = made.elements.iter().map(|element| {
+        let [from, to] = element.diagonal().map(|node| names.nodes[node].at);
+        (to[0] - from[0]).hypot(to[1] - from[1])
+    });
+    made.largest = diagonals.fold(0.0, f64::max);
     Ok(made)
 }
 

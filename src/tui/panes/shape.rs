@@ -16,12 +16,11 @@ use ratatui::layout::{Margin, Position, Rect};
 use ratatui::style::{Modifier, Style};
 use ratatui::text::{Line, Span};
 use ratatui::widgets::Widget;
-use std::collections::HashMap;
 use std::f64::consts::FRAC_PI_4;
 use stickslip_core::contact::element::SurfaceElement;
 use stickslip_core::fem::deformation::PointDeformation;
 use stickslip_core::fem::lagrange;
-use stickslip_core::model::{BodyKind, Contact, Model, Solid, SolidElement};
+use stickslip_core::model::{BodyKind, Contact, Model, Solid};
 use stickslip_debugger::explain::conditions::{ConditionArrow, Conditions, Given, conditions};
 use stickslip_debugger::explain::examination::Examination;
 use stickslip_debugger::explain::names;
@@ -37,6 +36,8 @@ const FORCE: f64 = 0.25;
 const NORMAL: f64 = 0.04;
 /// Minimum diagonal of a drawn element, in dots.
 const ELEMENT: f64 = 12.0;
+/// How many times its undeformed diagonal an element's drawn one is at most taken for.
+const GROWN: f64 = 2.0;
 /// Length of the largest rigid-body motion, as a fraction of the visible extent.
 const MOTION: f64 = 0.15;
 /// Length of the largest load and of the largest prescribed motion, as a fraction of the visible extent.
@@ -257,38 +258,18 @@ fn inside(canvas: &mut Canvas, window: &Window, solid: &Solid, app: &App, view: 
         let now: Vec<Point> = face.iter().map(|&node| window.place(view, node)).collect();
         draw_curve(canvas, window, &now, style);
     };
-    for SolidElement { kind, nodes, .. } in &solid.elements {
-        let across = kind.faces().len() / 2;
-        let (a, b) = (
-            window.place(view, nodes[0]),
-            window.place(view, nodes[across]),
-        );
+    let has_room = GROWN * solid.largest * window.scale >= ELEMENT;
+    for element in solid.elements.iter().filter(|_| has_room) {
+        let [a, b] = element.diagonal().map(|node| window.place(view, node));
         let size = (a[0] - b[0]).hypot(a[1] - b[1]) * window.scale;
         if size >= ELEMENT && window.sees(a, size) {
-            for face in kind.faces_of(nodes) {
+            for face in element.kind.faces_of(&element.nodes) {
                 draw(canvas, &face, app.theme.faint);
             }
         }
     }
-    if solid.materials.len() < 2 {
-        return;
-    }
-    let mut other = HashMap::new();
-    for SolidElement {
-        kind,
-        nodes,
-        material,
-    } in &solid.elements
-    {
-        for face in kind.faces_of(nodes) {
-            // Neighbours share a face and traverse it in opposite directions.
-            let mut ends = [face.first().copied(), face.last().copied()];
-            ends.sort_unstable();
-            match other.insert(ends, material) {
-                Some(across) if across != material => draw(canvas, &face, app.theme.text),
-                _ => {}
-            }
-        }
+    for face in &solid.seams {
+        draw(canvas, face, app.theme.text);
     }
 }
 
@@ -460,7 +441,8 @@ fn supports(
     app: &App,
     view: &View,
 ) {
-    let supports = found.supports.into_iter().map(|(node, held)| {
+    let shown = view.supports();
+    let supports = shown.iter().map(|&(node, held)| {
         let glyph = match held {
             [true, true, true] => "■",
             [true, true, false] => "▲",

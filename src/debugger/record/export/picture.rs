@@ -8,7 +8,7 @@ use super::chart;
 use super::export_state::{ExportError, ExportState, PicturePart};
 use super::timeline::{self, chosen, colour};
 use super::window::{FORCE, Window};
-use crate::explain::conditions::{Given, conditions};
+use crate::explain::conditions::{Given, conditions, supports};
 use crate::explain::names;
 use crate::explain::outline::{self, Bounds, Point, Projection, curve, extent};
 use crate::explain::round_off::RoundOff;
@@ -377,7 +377,7 @@ impl ShapeDrawing<'_> {
     fn conditions(&mut self) {
         let load_factor = self.shown.event.map_or(0.0, |event| event.load_factor);
         let found = conditions(&self.shown.scene.model, load_factor, self.now);
-        for (node, held) in found.supports {
+        for (node, held) in supports(&self.shown.scene.model) {
             let at = self.at(node);
             let kind = match held {
                 [true, true, true] => 1,
