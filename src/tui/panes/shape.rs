@@ -36,6 +36,8 @@ const FORCE: f64 = 0.25;
 const NORMAL: f64 = 0.04;
 /// Minimum diagonal of a drawn element, in dots.
 const ELEMENT: f64 = 12.0;
+/// Dots between two nodes of an element that is drawn straight between them.
+const CLOSE: f64 = 2.0;
 /// How many times its undeformed diagonal an element's drawn one is at most taken for.
 const GROWN: f64 = 2.0;
 /// Length of the largest rigid-body motion, as a fraction of the visible extent.
@@ -221,12 +223,15 @@ impl Window {
     }
 }
 
+/// Draws the curve of an element. Where its nodes are close, straight lines between them set the same dots.
 fn draw_curve(canvas: &mut Canvas, window: &Window, nodes: &[Point], style: Style) {
-    let dots: Vec<Dot> = curve(nodes)
-        .into_iter()
-        .map(|point| window.dot(point))
-        .collect();
-    canvas.polyline(&dots, style);
+    let dots = |points: &[Point]| -> Vec<Dot> { points.iter().map(|&p| window.dot(p)).collect() };
+    let straight = dots(nodes);
+    let is_close = |ends: &[Dot]| (ends[0][0] - ends[1][0]).hypot(ends[0][1] - ends[1][1]) < CLOSE;
+    match straight.windows(2).all(is_close) {
+        true => canvas.polyline(&straight, style),
+        false => canvas.polyline(&dots(&curve(nodes)), style),
+    }
 }
 
 fn bodies(canvas: &mut Canvas, window: &Window, app: &App, view: &View) {
