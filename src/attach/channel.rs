@@ -85,12 +85,11 @@ impl Channel {
 
     /// What a solver that connects needs to know, in words.
     pub fn invitation(&self) -> String {
-        match self {
-            Channel::Tcp { token, .. } => {
-                format!("waiting for a solver at {self}; its first line must be {token}")
-            }
-            _ => format!("waiting for a solver at {self}"),
-        }
+        let variables = self.environment().into_iter();
+        let set: String = variables
+            .map(|(name, value)| format!(" {name}={value}"))
+            .collect();
+        format!("waiting for a solver; start it with{set}")
     }
 
     /// The environment of a started solver.

@@ -489,15 +489,15 @@ impl Link {
         Fault::Died { how, asked }
     }
 
-    /// Closes the input, after a `bye` if `farewell`; returns whether the process ended.
-    pub(super) fn leave(&mut self, farewell: bool) -> bool {
+    /// Closes the input, after a `bye` if `farewell`; returns whether the process ended within this time.
+    pub(super) fn leave(&mut self, farewell: bool, within: Duration) -> bool {
         if let Some(mut input) = self.input.take().filter(|_| farewell) {
             let line = Request::Bye.line();
             self.log.exchanged(Side::Asked, &line);
             // A solver that does not read sees the end of its input.
             let _ = input.write(line.as_bytes());
         }
-        self.ends_within(FAREWELL)
+        self.ends_within(within)
     }
 }
 
@@ -505,7 +505,7 @@ impl Drop for Link {
     /// Asks the solver to end, then kills its process group.
     fn drop(&mut self) {
         if self.input.is_some() {
-            self.leave(true);
+            self.leave(true, FAREWELL);
         }
         // Also kills processes that the solver started.
         if let Some(child) = &mut self.child {

@@ -510,7 +510,7 @@ failure_kinds! {
     CutTooOften "cut-too-often" "the increment was cut too often at one node",
     OverConstrained "over-constrained" "node and surface cannot move apart",
     Reported "reported" "an attached solver reported the failure",
-    IterationLimit "iteration-limit" "an attached solver reached `--most` in an increment",
+    IterationLimit "iteration-limit" "an attached solver reached `--max-iterations` in an increment",
     SolverLost "solver-lost" "an attached solver cannot continue",
 }
 

@@ -6,16 +6,20 @@ use super::json::{self, JsonArgs};
 use super::records::{FailureKind, FailureRecord, RemediesRecord, RemedyRecord};
 use super::solver::{Subject, SubjectArgs, step_to_end};
 use stickslip_core::step::drive::RunEnd;
+use stickslip_core::step::event::Failure;
 use stickslip_core::step::solver::Solver;
 use stickslip_core::step::state::State;
 use stickslip_debugger::explain::examination::Examination;
+use stickslip_debugger::explain::page::DiagnosisPage;
 use stickslip_debugger::explain::remedies::{
     self, COLUMNS, RemainingViolations, RemedyTrial, TrialEnd,
 };
 use stickslip_debugger::explain::remedy::Remedy;
 use stickslip_debugger::explain::report;
 use stickslip_debugger::explain::walk::ReportedIterations;
-use stickslip_debugger::explain::{attached, page};
+use stickslip_debugger::explain::{attached, failures, page};
+use stickslip_debugger::history::rounds::{self, CycleWatch};
+use stickslip_debugger::history::strip::Strip;
 use stickslip_scene::Scene;
 use stickslip_scene::shown::aligned;
 
@@ -55,9 +59,14 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         why: Vec::new(),
         remedies: Vec::new(),
     };
+    let mut watch = Watch {
+        state: solver.state().clone(),
+        iterations: ReportedIterations::default(),
+        cycle: CycleWatch::default(),
+    };
     let failure = match solver.stepper() {
         Some(stepper) => run_to_end(stepper),
-        None => match step_to_end(solver.as_mut(), None, &mut |_| ())? {
+        None => match step_to_end(solver.as_mut(), None, &mut |solver| watch.see(solver))? {
             RunEnd::Failed(failure) => Some(failure),
             _ => None,
         },
@@ -77,7 +86,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
             page::causes(stepper, &state, &failure, &|| false),
             remedies::all(stepper, &state, spec, &|| false),
         ),
-        None => offered(solver.as_mut(), &state),
+        None => offered(solver.as_mut(), &state, &failure, watch),
     };
     record.why = why;
     for line in &record.why {
@@ -103,19 +112,47 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     Ok(exit)
 }
 
-/// The causes that the interface problem of an attached solver shows, and the remedies that the solver offers.
-fn offered(solver: &mut dyn Solver, state: &State) -> (Vec<String>, Vec<Remedy>) {
+/// The last iterations of an attached solver.
+struct Watch {
+    state: State,
+    iterations: ReportedIterations,
+    cycle: CycleWatch,
+}
+
+impl Watch {
+    fn see(&mut self, solver: &dyn Solver) {
+        let (event, state) = (solver.event(), solver.state());
+        self.iterations.add(&self.state, event, state);
+        let strip = Strip::new(solver.model(), state, Some(event), None, 0.0);
+        self.cycle.see(&strip);
+        self.state = state.clone();
+    }
+}
+
+/// The causes that the iterations of an attached solver and its interface problem show, as on the page of the debugger, and the
+/// remedies that the solver offers.
+fn offered(
+    solver: &mut dyn Solver,
+    state: &State,
+    failure: &Failure,
+    mut watch: Watch,
+) -> (Vec<String>, Vec<Remedy>) {
     let model = solver.model().clone();
     let found = match solver.interface_problem(state) {
-        Ok(posed) => {
-            let reported = ReportedIterations::default();
-            attached::examine(&model, state, &posed, &reported, &[], &|| false)
-        }
+        Ok(posed) => attached::examine(&model, state, &posed, &watch.iterations, &[], &|| false),
         Err(_) => Examination::default(),
     };
     let all = remedies::offered(&model, state, &solver.capabilities(), &found);
-    let why = Some(found.head).filter(|head| !head.is_empty());
-    (why.into_iter().collect(), all)
+    let rounds = watch.cycle.now();
+    let rounds = rounds.map(|found| rounds::words(&model, &found, false));
+    let reported = [failures::describe(&model, failure)].into_iter();
+    let head = Some(found.head.clone()).filter(|head| !head.is_empty());
+    let page = DiagnosisPage::attached(reported.chain(rounds).collect(), found, Vec::new());
+    let why = match page.why.is_empty() {
+        true => head.into_iter().collect(),
+        false => page.why,
+    };
+    (why, all)
 }
 
 /// The trials as text.

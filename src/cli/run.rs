@@ -34,7 +34,12 @@ pub struct Args {
     #[command(flatten)]
     outputs: RunOutputArgs,
     /// Maximum iterations per increment (attached solvers)
-    #[arg(long, value_name = "ITERATIONS", default_value_t = 1000)]
+    #[arg(
+        long = "max-iterations",
+        alias = "most",
+        value_name = "ITERATIONS",
+        default_value_t = 1000
+    )]
     most: u64,
     /// Tests the stability of each accepted state: a column of --csv, and a summary at the end
     #[arg(long)]
@@ -244,7 +249,7 @@ impl<'a> Run<'a> {
     }
 
     /// Reports where and why the run failed.
-    fn report_failure(&self, failure: &Failure, interrupt: &Interrupt) -> RunResult {
+    fn report_failure(&mut self, failure: &Failure, interrupt: &Interrupt) -> RunResult {
         let (event, state) = (self.solver.event(), self.solver.state());
         let (model, at, load) = (&self.tally.scene.model, event.position, event.load_factor);
         self.report_marks();
@@ -261,6 +266,10 @@ impl<'a> Run<'a> {
             notify(&format!(
                 "  {how} opens it in the debugger; d shows the cause"
             ));
+            result.why.extend(self.tally.rounds());
+            for line in &result.why {
+                notify(&format!("  why: {line}"));
+            }
             return result;
         }
         let mut scratch = solver(self.solver.model().clone());

@@ -1,4 +1,4 @@
-//! `stickslip show NAME`: prints the file of a built-in scene, study, lesson or chart, or a finished CalculiX run as text.
+//! `stickslip show NAME`: prints the file of a built-in scene, study, lesson, deck or chart, or a finished CalculiX run as text.
 
 use super::base::{Error, Exit, put};
 use std::path::PathBuf;
@@ -8,9 +8,15 @@ use stickslip_scene::builtin;
 use stickslip_scene::format::error::did_you_mean;
 use stickslip_study::{benchmarks, builtin as studies, chart_file};
 
+/// The deck that page `past-runs` runs in CalculiX.
+const DECK: (&str, &str) = (
+    "stiff.inp",
+    include_str!("../../tests/calculix/causes/stiff.inp"),
+);
+
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Name of a built-in scene, study or lesson, the .cel file of a finished CalculiX run, or a recorded exchange
+    /// Name of a built-in scene, study, lesson or deck, the .cel file of a finished CalculiX run, or a recorded exchange
     name: String,
     /// Prints the work-precision chart of that scene
     #[arg(long)]
@@ -47,7 +53,8 @@ fn find(name: &str, chart: bool) -> Result<&'static str, String> {
             .map(|file| file.text)
             .or_else(|| studies::find(name).map(|file| file.text))
             .or_else(|| (name == benchmarks::BUILTIN).then(benchmarks::builtin_text))
-            .or_else(|| teach::find(name).map(|file| file.text)),
+            .or_else(|| teach::find(name).map(|file| file.text))
+            .or_else(|| (name == DECK.0).then_some(DECK.1)),
     };
     found.ok_or_else(|| {
         let scenes = builtin::list().iter().map(|scene| scene.name);

@@ -197,14 +197,18 @@ impl<'a> Tally<'a> {
         if self.minors < *most {
             return None;
         }
-        let rounds = watch
-            .now()
-            .map(|now| rounds::words(solver.model(), &now, false));
+        let most = counted(*most, "iteration");
+        let rounds = self.rounds();
         Some(format!(
-            "stopped after {} in one increment (--max-iterations): {}",
-            counted(*most, "iteration"),
+            "stopped after {most} in one increment (--max-iterations): {}",
             rounds.unwrap_or_else(|| "the modes no longer change".into())
         ))
+    }
+
+    /// How the modes of an attached solver keep changing.
+    pub fn rounds(&mut self) -> Option<String> {
+        let (_, watch) = self.most.as_mut()?;
+        Some(rounds::words(&self.scene.model, &watch.now()?, false))
     }
 
     fn accept(

@@ -184,10 +184,11 @@ fn nodes(scene: &Scene) -> Result<Vec<Node>, Fault> {
         });
         let all = at.as_slice();
         if all.len() != scene.dimension || !all.iter().all(|x| x.is_finite()) {
-            let count = if scene.dimension == 3 { "three" } else { "two" };
-            return refused(format!(
-                "nodes[{k}].at: a position must be {count} finite numbers"
-            ));
+            let numbers = match scene.dimension {
+                3 => "three finite numbers",
+                _ => "two finite numbers, or three with \"dimension\":3",
+            };
+            return refused(format!("nodes[{k}].at: a position must be {numbers}"));
         }
         let name = match node.name.as_str() {
             "" => format!("node.{}", k + 1),

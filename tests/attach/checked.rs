@@ -11,6 +11,7 @@ pub fn tests() -> Vec<Trial> {
     crate::tests![
         our_own_solver_passes_every_check,
         each_wrong_is_found_by_its_check,
+        an_increment_that_was_given_up_is_counted_and_the_next_one_checked,
         the_command_line_tells_it_and_ends_with_1,
         a_check_keeps_the_exchange_of_every_start_in_the_file_that_is_named,
     ]
@@ -171,6 +172,25 @@ fn each_wrong_is_found_by_its_check() {
             });
         }
     });
+}
+
+fn an_increment_that_was_given_up_is_counted_and_the_next_one_checked() {
+    for (how, told) in [
+        ("gives-up", "; 3 increments accepted, 1 given up"),
+        ("nothing", "; 4 increments accepted, 0 given up"),
+    ] {
+        let report = check(&Rude::new(how).start, &Log::default());
+        let text = report.text();
+        let step = report.checks.iter().find(|check| check.what == "step");
+        let found = &step.unwrap().found;
+        assert!(
+            found.starts_with("12 iterations, ") && found.ends_with(told),
+            "{text}"
+        );
+        for what in ["order", "determinism", "restore"] {
+            assert_eq!(verdict(&report, what), Verdict::Good, "{text}");
+        }
+    }
 }
 
 fn the_command_line_tells_it_and_ends_with_1() {

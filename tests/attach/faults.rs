@@ -340,9 +340,9 @@ fn a_stray_line_on_standard_output_is_a_warning_and_the_answer_counts() {
 const BAD_STARTS: &[(&str, &str)] = &[
     (
         "hang-at-start",
-        "did not answer hello within 0.5 s and was stopped; allow more time with --start-timeout",
+        "did not answer hello within 4 s and was stopped; allow more time with --start-timeout",
     ),
-    ("hang-in-scene", "did not answer scene within 0.5 s"),
+    ("hang-in-scene", "did not answer scene within 4 s"),
     (
         "dies-in-scene",
         "the solver ended (exit status 3) without answering scene",
@@ -390,7 +390,8 @@ fn each_fault_at_the_start_has_a_name() {
             scope.spawn(move || {
                 let mut rude = Rude::new(how);
                 if how.starts_with("hang") {
-                    rude.start.start = super::side::SHORT;
+                    // Hello comes in time on a busy machine, too.
+                    rude.start.start = Duration::from_secs(4);
                 }
                 let fault = rude
                     .attach()

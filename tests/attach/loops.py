@@ -6,7 +6,7 @@ px, py, mu = 1.0, 0.25, 0.2
 loops = Loops({
     "title": "A node that opens where it sticks", "nodes": [{"at": [0, 0]}, {"at": [5, 0]}, {"at": [-5, 0]}],
     "surfaces": [{"name": "floor", "nodes": [1, 2], "rigid": True}],
-    "contacts": [{"id": 0, "node": 0, "surface": "floor", "friction": {"mu": mu}}]}, name="loops in Python")
+    "contacts": [{"node": 0, "surface": "floor", "friction": {"mu": mu}}]}, name="loops in Python")
 chosen = "free"
 for k in range(1, 41):
     [mode] = loops.modes([chosen])

@@ -1,7 +1,7 @@
 //! Solvers that are attached, good ones and rude ones, without anything installed.
 //!
 //! The solvers on the other side are this program itself, started again with a first argument that says what it is to be:
-//! [`rude`], or [`filter`]. That is why it has a `main` of its own.
+//! [`rude`], [`filter`] or [`version_1`]. That is why it has a `main` of its own.
 
 #[path = "../common/mod.rs"]
 mod common;
@@ -18,6 +18,7 @@ mod rude;
 mod served;
 mod side;
 mod space;
+mod version_1;
 
 use libtest_mimic::{Arguments, Trial};
 use std::process::ExitCode;
@@ -41,6 +42,7 @@ fn main() -> ExitCode {
     match arguments.split_first() {
         Some((first, rest)) if first == rude::NAME => return rude::main(rest),
         Some((first, rest)) if first == filter::NAME => return filter::main(rest),
+        Some((first, rest)) if first == version_1::NAME => return version_1::main(rest),
         _ => {}
     }
     let mut tests: Vec<Trial> = faults::tests();
@@ -50,5 +52,6 @@ fn main() -> ExitCode {
     tests.extend(kept::tests());
     tests.extend(checked::tests());
     tests.extend(space::tests());
+    tests.extend(version_1::tests());
     libtest_mimic::run(&Arguments::from_args(), tests).exit_code()
 }

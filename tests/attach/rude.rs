@@ -305,7 +305,12 @@ impl Rude {
                 true => n as f64 / ALL as f64,
                 false => ((n - 1) / EACH + 1) as f64 * EACH as f64 / ALL as f64,
             },
-            "ended": match of { 0 if n == ALL => "done", 0 => "increment", _ => "iteration" },
+            "ended": match of {
+                0 if n == ALL => "done",
+                0 if self.is("gives-up") && n == 2 * EACH => "failure",
+                0 => "increment",
+                _ => "iteration",
+            },
             "contacts": contacts,
             "residual": {"relative": 0.1},
             "displacements": [[0, 0], [0, -0.1], [0, 0], [0, 0]],

@@ -496,6 +496,12 @@ fn a_lagged_t_max_is_inferred_from_the_iterations_of_a_solver() {
         page.contains("new T_max of a  a opens   ΔF_n = -5.621"),
         "{page}"
     );
+    let folder = tempfile::tempdir().unwrap();
+    let words = ["remedies", "--", stickslip(), "serve", "osc-lag4"];
+    let output = program(folder.path(), &words).output().unwrap();
+    let found = err(&output);
+    assert!(found.contains(&format!("why: {lag}")), "{found}");
+    assert!(!found.contains("period 2"), "{found}");
 }
 
 /// With half of its matrix, the problem is not the one that the solver iterates on.

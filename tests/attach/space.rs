@@ -199,7 +199,12 @@ fn remedies_are_tried_on_the_solver_itself() {
         "{}",
         out(&output)
     );
-    let cause = "why: A consistent state of the interface problem was found";
+    let cause = "why: cycle of period 2: the direction of friction at node.1";
+    assert!(err(&output).contains(cause), "{}", err(&output));
+    let mut arguments = vec!["run", "--"];
+    arguments.extend(start.command.iter().map(String::as_str));
+    let output = program(folder.path(), &arguments).output().unwrap();
+    assert_eq!(code(&output), 3);
     assert!(err(&output).contains(cause), "{}", err(&output));
 }
 

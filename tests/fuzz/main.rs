@@ -24,12 +24,15 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 use stickslip::action::{self, Action, Context};
+use stickslip::explain::attached;
+use stickslip::explain::walk::ReportedIterations;
 use stickslip::record::command::Command;
 use stickslip::record::differences::compare;
 use stickslip::record::journal::{JournalTarget, Record};
 use stickslip::record::snapshot::Snapshot;
 use stickslip::record::story::story;
-use stickslip::recorded::exchange;
+use stickslip::recorded::exchange::{self, RecordedSolver};
+use stickslip::recorded::interface_problem::read_problem;
 use stickslip::scene::Scene;
 use stickslip::scene::cost::Cost;
 use stickslip::scene::shown;
@@ -47,6 +50,7 @@ use stickslip::study::sweep::{ResultStorage, RunError, Store};
 use stickslip::study::trial::Variant;
 use stickslip::study::{Plan, Study, Watch, precision_figure};
 use stickslip::teach::Lesson;
+use stickslip_exchange::attach::Answer;
 
 /// Where nobody says how long a target is to run.
 const SECONDS: f64 = 1.0;
@@ -240,14 +244,39 @@ const SPACE: &str = r#"# stickslip exchange 1
 > {"type":"step"}
 < {"type":"progress","done":1,"of":2}
 < {"type":"state","at":{"increment":1},"load":0.5,"ended":"iteration","contacts":[{"id":0,"mode":"free","next":"sliding","gap":-1e-3,"f_n":0,"f_t":[0,0],"limit":0,"slip":[0,1e-3]},{"id":1,"mode":"free","next":"free","gap":1,"f_n":0,"f_t":[0,0],"limit":0,"slip":[0,0]}],"displacements":[[0,0,0],[0,0,0],[0,0,0],[0,0,0],[0,0,0]]}
+> {"type":"problem"}
+< {"type":"problem","contacts":[0,1],"tangents":2,"kind":"stiffness","matrix":{"size":6,"triplets":[[0,0,9],[1,1,9],[2,2,9],[3,3,9],[4,4,9],[5,5,9],[0,4,3],[4,0,3]]},"q":[-1e-2,2e-3,0,-1e-2,0,2e-3],"mu":[0.3,0.5]}
 > {"type":"step"}
 < {"type":"state","load":0.5,"ended":"done","contacts":[{"id":0,"mode":"sliding","next":"sliding","gap":0,"f_n":10,"f_t":[2.4,1.8],"limit":3,"slip":[4e-3,3e-3],"normal":[0,0,1],"tangent":[1,0,0]}]}
 "#;
+
+/// Reads and examines the interface problems of an exchange.
+fn problems(text: &str, past: &RecordedSolver) -> Took {
+    let lines = text.lines().filter_map(|line| line.strip_prefix("< "));
+    let (begun, mut ids) = (Instant::now(), Vec::new());
+    for answer in lines.filter_map(|line| Answer::read(line).ok()) {
+        match answer {
+            Answer::Scene(scene) => ids = scene.contacts.into_iter().map(|c| c.id).collect(),
+            Answer::Problem(problem) => match read_problem(&problem, &ids) {
+                Ok(posed) => {
+                    let iterations = ReportedIterations::default();
+                    let late = || begun.elapsed() > Duration::from_millis(50);
+                    let (model, state) = (past.model(), past.state());
+                    attached::examine(model, state, &posed, &iterations, &[], &late);
+                }
+                Err(fault) => return Took::Refused(fault.to_string()),
+            },
+            _ => {}
+        }
+    }
+    Took::Well
+}
 
 #[test]
 fn exchanges() {
     let mut corpus = files("problems/lessons", "exchange");
     corpus.push(SPACE.into());
+    corpus.extend(files("tests/attach", "exchange"));
     for text in &corpus {
         assert!(exchange::open("x.exchange", text).is_ok());
     }
@@ -259,7 +288,7 @@ fn exchanges() {
         for _ in 0..4 {
             let _ = past.step();
         }
-        Took::Well
+        problems(text, &past)
     });
 }
 

@@ -92,7 +92,7 @@ def main_cases():
     made = deck(usual, friction="0.3, 1e12")
     yield "stick", "stick slope", made, "0.3, 1e5", swap(made, "0.3, 1e12", "0.3, 1e5")
     made = deck([([LOAD], TIME)], gap=0.05)
-    cure = "*BOUNDARY\nTOP, 1, 1, 0.\nTOP, 2, 2, 0.\nTOP, 3, 3, -0.07"
+    cure = "*BOUNDARY\nTOP, 1, 1, 0.\nTOP, 2, 2, 0.\nTOP, 3, 3, -0.063"
     yield "open", "held by open contact", made, cure, swap(made, LOAD, cure)
     made = deck([([LOAD + "\nTOP, 1, 5."], TIME)], friction="")
     cure = "*BOUNDARY\nTOP, 1, 1, 0.\nTOP, 2, 2, 0."
@@ -123,6 +123,15 @@ def main_cases():
     yield "coarse", "coarse slave", made, "SBASE, SSLIDER", swap(made, "SSLIDER, SBASE", "SBASE, SSLIDER")
     made = deck([([HOLD, LOAD], TIME), (["*BOUNDARY\nTOP, 1, 1, .3"], "1., 1., 0.9, 1.")])
     yield "cuts", "no room for cuts", made, "1, 1, 0.001, 1", swap(made, "1., 1., 0.9, 1.", "1, 1, 0.001, 1")
+    made = deck([([HOLD, LOAD], TIME), (["*BOUNDARY\nTOP, 1, 1, .3"], "1., 1.")])
+    at = made.index("1., 1.") - 1
+    yield "direct", "no room for cuts", made[:at] + ["*STATIC, DIRECT"] + made[at + 1 :], "*STATIC\n1, 1, 0.001", swap(made, "1., 1.", "1, 1, 0.001")
+    pull, cure = "*CLOAD\nTOP, 3, 20.", "*BOUNDARY\nTOP, 1, 3, 0."
+    made = deck([([LOAD], TIME), ([pull], TIME)])
+    yield "pull", "pulled off", made, cure, swap(made, pull, cure)
+    push, cure = "*CLOAD\nTOP, 1, 40.", "*BOUNDARY\nTOP, 1, 1, 0."
+    made = deck([([LOAD], TIME), ([push], TIME)], friction="0.9, 1e5")
+    yield "tip", "tipping over", made, cure, swap(made, push, f"{cure}\n{push}")
     made = deck([(["*BOUNDARY\nTOP, 1, 2, 0.\nFOOT, 3, 3, -0.5", LOAD], TIME)], foot=True)
     yield "supported", "constrained slave nodes", made, "** supports no other node", swap(made, "*BOUNDARY\nTOP, 1, 2, 0.\nFOOT, 3, 3, -0.5", HOLD + "\n** supports no other node")
 

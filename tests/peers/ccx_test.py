@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """What stickslip does with the contact decks of CalculiX' own tests (Debian: calculix-ccx-test): read and solved in the plane, read
-by the rules for 3-D decks, or refused and why. `tests/peers/decks.py` compares the solved ones with ccx.
+by the rules for 3-D decks, or refused and why; with the largest difference of the solved ones from ccx if that is installed.
 Usage: tests/peers/ccx_test.py STICKSLIP FOLDER (the folder of the decks: /usr/share/doc/calculix-ccx-test/examples/test)"""
 import collections, gzip, os, re, shutil, subprocess, sys, tempfile
+import decks
 
 program, packed = sys.argv[1:3]
 folder = tempfile.mkdtemp()
@@ -29,6 +30,10 @@ for name in sorted(os.listdir(folder)):
     else:
         solved = subprocess.run([program, "run", path, "--quiet"], capture_output=True, timeout=300).returncode == 0
         outcome, shown = ("solved" if solved else "read, not solved"), f"{causes} findings"
+        if solved and shutil.which("ccx"):
+            _, _, here, _ = decks.ours(os.path.abspath(program), name, folder, [])
+            why, there, _ = decks.theirs("ccx", name, folder)
+            shown += f"; against ccx: {why or decks.differ(here, there)}"
     counts[outcome] += 1
     print(f"{name}: {outcome}: {shown}", flush=True)
 print(", ".join(f"{count} {outcome}" for outcome, count in counts.most_common()))

@@ -731,3 +731,18 @@ fn a_solver_is_attached_stepped_forced_gone_back_with_and_gone_with_the_program(
         "the solver or its guard outlives the debugger"
     );
 }
+
+#[test]
+fn the_progress_of_a_long_step_and_its_time_fit_80_columns() {
+    let progress = json!({"type": "progress", "text": "CG iteration", "done": 30, "of": 200});
+    let [hello, scene, state] = [hello(), scene(), state(1, "free")];
+    let script = format!(
+        "read a; echo '{hello}'; read b; echo '{scene}'; read c; echo '{progress}'; sleep 4; echo '{state}'; read d"
+    );
+    let solver = ["attach", "--no-journal", "--", "sh", "-c", &script];
+    let mut session = Start::debugger(&solver).size(80, 24).go();
+    session.see("goes back by restart");
+    session.type_and_see("s", "CG iteration 30 of 200, 2 s; Ctrl-C stops");
+    session.see("major 1");
+    session.quit();
+}

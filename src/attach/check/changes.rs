@@ -226,8 +226,8 @@ pub fn parameters(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> 
         }
     }
     let mut found = format!(
-        "{} parameters accept their current values and refuse invalid ones",
-        all.len()
+        "{}: current values are accepted, invalid ones refused",
+        counted(all.len(), "parameter")
     );
     if !without.is_empty() {
         found += &format!(

@@ -3,11 +3,14 @@
 use super::super::link::name;
 use super::report::{Outcome, fails, good, not_offered};
 use super::trial::{Trial, millis};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 use stickslip_core::model::Mode;
 use stickslip_debugger::recorded::fault::Fault;
 use stickslip_exchange::attach::message::{Id, State};
 use stickslip_exchange::attach::{Answer, Request};
+
+/// Time to end; unloading large libraries on a busy machine takes seconds.
+const PATIENCE: Duration = Duration::from_secs(10);
 
 /// Checks that an interrupt, before or during a step, has no separate answer.
 pub fn interrupt(mut trial: Trial, _: &[State]) -> Result<Outcome, Fault> {
@@ -69,7 +72,7 @@ pub fn wrong_requests(mut trial: Trial, states: &[State]) -> Result<Outcome, Fau
 /// Checks that the solver ends on `bye`.
 pub fn bye(mut trial: Trial, _: &[State]) -> Result<Outcome, Fault> {
     let began = Instant::now();
-    Ok(match trial.link.leave(true) {
+    Ok(match trial.link.leave(true, PATIENCE) {
         true => good(format!("ends within {:.0} ms", millis(began.elapsed()))),
         false => fails("does not end", "end on bye"),
     })
@@ -77,7 +80,7 @@ pub fn bye(mut trial: Trial, _: &[State]) -> Result<Outcome, Fault> {
 
 /// Checks that the solver ends when the debugger is gone.
 pub fn end_of_input(mut trial: Trial, _: &[State]) -> Result<Outcome, Fault> {
-    Ok(match trial.link.leave(false) {
+    Ok(match trial.link.leave(false, PATIENCE) {
         true => good("ends when its standard input is closed"),
         false => fails(
             "does not end when its standard input is closed",

@@ -9,7 +9,7 @@
 use super::super::started_solver::other;
 use super::report::{Outcome, fails, good, not_offered, not_tried};
 use super::steps::is_settled;
-use super::trial::{Trial, is_last};
+use super::trial::Trial;
 use nalgebra::DVector;
 use stickslip_core::model::Mode;
 use stickslip_core::step::solver::ReportedProblem;
@@ -97,7 +97,7 @@ pub fn problem(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> {
             EndedLevel::Cut | EndedLevel::Failure => stuck.clone_from(&stuck_at_start),
             EndedLevel::Iteration | EndedLevel::Equilibrium | EndedLevel::Done => {}
         }
-        if is_last(&state) || trial.is_late() {
+        if trial.is_late() {
             break;
         }
     }

@@ -2,7 +2,7 @@
 //! after a restart.
 
 use super::report::{Outcome, Report, fails, good, not_tried};
-use super::trial::{Trial, is_last, millis};
+use super::trial::{Trial, millis};
 use stickslip_core::model::{Mode, Model};
 use stickslip_core::step::judged::ALLOWED;
 use stickslip_core::words::counted;
@@ -43,10 +43,13 @@ pub fn stepping(report: &mut Report, mut trial: Trial) -> Vec<State> {
         let began = Instant::now();
         match trial.step() {
             Ok(Some(state)) => {
+                if states.last().is_some_and(|before| is_retry(before, &state)) {
+                    break;
+                }
                 times.push(millis(began.elapsed()));
-                let last = is_last(&state);
+                let done = state.ended == EndedLevel::Done;
                 states.push(state);
-                if last {
+                if done {
                     break;
                 }
             }
@@ -65,9 +68,10 @@ pub fn stepping(report: &mut Report, mut trial: Trial) -> Vec<State> {
             "answer the first step with a state",
         ),
         Some(median) => good(format!(
-            "{}, {median:.1} ms each (median; the slowest {:.1} ms)",
+            "{}, {median:.1} ms each (median; the slowest {:.1} ms); {}",
             counted(states.len(), "iteration"),
-            times[times.len() - 1]
+            times[times.len() - 1],
+            increments(&states),
         )),
     });
     report.add("step", step);
@@ -80,6 +84,25 @@ pub fn stepping(report: &mut Report, mut trial: Trial) -> Vec<State> {
     report.add("output", Ok(output(&trial)));
     look(report, &trial.scene, &trial.hello.name, &states);
     states
+}
+
+/// Whether a solver repeats an increment that it gave up.
+fn is_retry(before: &State, state: &State) -> bool {
+    before.ended == EndedLevel::Failure && state.at.increment <= before.at.increment
+}
+
+/// How many increments were accepted, and how many were given up.
+fn increments(states: &[State]) -> String {
+    let ended = |levels: &[EndedLevel]| {
+        let of = |state: &&State| levels.contains(&state.ended);
+        states.iter().filter(of).count()
+    };
+    let accepted = ended(&[EndedLevel::Increment, EndedLevel::Done]);
+    let given_up = ended(&[EndedLevel::Failure]);
+    format!(
+        "{} accepted, {given_up} given up",
+        counted(accepted, "increment")
+    )
 }
 
 /// Checks that standard output has only messages.
@@ -360,7 +383,10 @@ fn unlawful(found: &ContactResult, small: f64, crawl: f64) -> Option<(String, &'
             ))
         }
         Mode::Sliding if off > small => Some((
-            format!("sliding with f_t = {f_t:?}, {degrees:.1} degrees off its slip"),
+            format!(
+                "sliding with f_t = {f_t:?} of {:?}, {degrees:.1} degrees off its slip",
+                limit.unwrap_or(size)
+            ),
             "|f_t| = limit in the direction of slip, the motion of the master relative to the node",
         )),
         _ if limit.is_some_and(|limit| size > limit.abs() + small) => Some((

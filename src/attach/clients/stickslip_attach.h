@@ -333,6 +333,11 @@ static void ss_force(const char *line, int releases) {
     ss_say("{\"type\":\"ok\"}\n");
 }
 
+static void ss_refuse_step(void) {
+    if (ss.over > 1) ss_say("{\"type\":\"refused\",\"reason\":\"the loops of the solver have ended\"}\n");
+    else ss_say("{\"type\":\"refused\",\"reason\":\"the history is complete\"}\n");
+}
+
 /* Answers requests until the next step. */
 static void ss_answer(void) {
     char line[8192];
@@ -342,7 +347,7 @@ static void ss_answer(void) {
         else if (!strncmp(type, "hello\"", 6)) ss_send(ss.hello.letters, ss.hello.length);
         else if (!strncmp(type, "scene\"", 6)) ss_send(ss.scene.letters, ss.scene.length);
         else if (!strncmp(type, "step\"", 5) && !ss.over) return;
-        else if (!strncmp(type, "step\"", 5)) ss_say("{\"type\":\"refused\",\"reason\":\"the history is complete\"}\n");
+        else if (!strncmp(type, "step\"", 5)) ss_refuse_step();
         else if (!strncmp(type, "save\"", 5)) ss_save();
         else if (!strncmp(type, "restore\"", 8)) ss_restore(line);
         else if (!strncmp(type, "force\"", 6)) ss_force(line, 0);
@@ -469,6 +474,7 @@ void ss_pause(const char *ended, double load, double residual, double tolerance)
 
 void ss_end(void) {
     ss.over = 2;
+    ss_refuse_step(); /* The one that ended the last pause. */
     ss_answer();
 }
 #endif

@@ -227,8 +227,9 @@ class Loops:
         assert _line is not None
         while True:
             self.session.course.over = True
+            # The step that ended the last pause.
+            _line.say(_text({"type": "refused", "reason": "the loops of the solver have ended"}))
             self.answer()
-            _line.say(_text({"type": "refused", "reason": "the history is complete"}))
 
     def answer(self) -> None:
         """Answer requests until the next step."""
@@ -344,7 +345,7 @@ class _Session:
         self.solver = solver
         self.scene = {"type": "scene", **solver.scene()}
         self.scene["contacts"] = _rows(self.scene["contacts"])
-        self.ids: list[Id] = [each["id"] for each in self.scene["contacts"]]
+        self.ids: list[Id] = [each.setdefault("id", place) for place, each in enumerate(self.scene["contacts"])]
         modes = {each["id"]: each.get("mode", "free") for each in self.scene["contacts"]}
         self.course = _Course(chosen=modes, held=solver.held)
         self.kept: list[tuple[Any, Any, _Course]] = []

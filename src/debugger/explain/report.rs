@@ -109,7 +109,7 @@ pub fn reason(decision: &Decision, friction: bool) -> String {
         Rule::Tied => "Tied: held at its point of the surface, even in tension, without Table 2.",
         Rule::Held if decision.wanted == decision.next => {
             return format!(
-                "You hold it {}; Table 2 decides the same.",
+                "You hold it {}; the solver decides the same.",
                 mode(decision.next)
             );
         }

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use stickslip_core::interface::problem::InterfaceProblem;
 use stickslip_core::interface::trials::Trials;
 use stickslip_core::model::{BoundUpdate, Mode, Model, Settings, SlipCount, Strategy, Touch};
-use stickslip_core::step::event::Event;
+use stickslip_core::step::event::{Event, Position};
 use stickslip_core::step::solver::ReportedProblem;
 use stickslip_core::step::state::State;
 use stickslip_core::strategy::method;
@@ -17,6 +17,8 @@ use stickslip_scene::format::condensed::Problem;
 
 /// Maximum number of contacts of a walked problem, because each iteration is a dense solve.
 const MOST: usize = 100;
+/// Maximum number of minor iterations compared with the interface problem.
+pub const MOST_REPORTED: usize = 200;
 /// Relative tolerance of forces.
 const SAME: f64 = 1e-6;
 
@@ -30,6 +32,21 @@ pub struct ReportedIterations {
 }
 
 impl ReportedIterations {
+    /// Adds the iteration between two states. Those of an earlier major iteration are dropped, and all if it has ended.
+    pub fn add(&mut self, before: &State, event: &Event, after: &State) {
+        let major = |at: Position| (at.increment, at.attempt, at.major);
+        let at = major(event.position);
+        let is_other = |last: &Arc<Event>| major(last.position) != at;
+        if self.events.last().is_none_or(is_other) || self.events.len() == MOST_REPORTED {
+            self.events.clear();
+            self.start = Some(Box::new(before.clone()));
+        }
+        self.events.push(Arc::new(event.clone()));
+        if major(after.next) != at {
+            self.events.clear();
+        }
+    }
+
     /// The gap of a contact at the start, from which it travels to its gap without force; `None` if unknown.
     fn start_gap(&self, model: &Model, slave: usize) -> Option<f64> {
         let (start, record) = (self.start.as_ref()?, self.events.first()?.nodes.get(slave)?);

@@ -353,7 +353,7 @@ impl WireFrame<'_> {
                 (Some(rule), _) => rule,
                 (None, Some(ours)) if ours.next == next => ours.rule,
                 (None, None) if !found.over => Rule::OffSurface,
-                (None, _) if forced != Forced::No => Rule::Held,
+                (None, _) if matches!(forced, Forced::Held(_)) => Rule::Held,
                 (None, _) => Rule::Theirs,
             },
             tests: ours.map_or([tested.next().or(own), tested.next()], |ours| ours.tests),

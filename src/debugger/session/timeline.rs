@@ -7,7 +7,7 @@ use crate::explain::failures;
 use crate::explain::influence::PushPath;
 use crate::explain::report;
 use crate::explain::reported_pushes::Iterations;
-use crate::explain::walk::ReportedIterations;
+use crate::explain::walk::{MOST_REPORTED, ReportedIterations};
 use crate::history::branches;
 use crate::history::breakpoints::Breakpoints;
 use crate::history::compare::{self, Comparison};
@@ -27,9 +27,6 @@ use stickslip_core::step::intervene::Intervention;
 use stickslip_core::step::state::{State, Status};
 use stickslip_scene::number::shortest;
 use stickslip_scene::shown;
-
-/// Maximum number of minor iterations compared with the interface problem of an attached solver.
-const MOST_REPORTED: usize = 200;
 
 /// A tree of branches, and the cursor on its current line.
 pub struct Timeline {

@@ -206,19 +206,24 @@ fn outcome(app: &App, view: &View, width: u16) -> paint::Lines {
         const SPINNER: [&str; 4] = ["◐", "◓", "◑", "◒"];
         let turns = (app.busy.as_millis() / TURN.as_millis()) as usize;
         let turn = SPINNER[turns % SPINNER.len()];
+        let progress = view.attached.and_then(|attached| attached.log.progress());
         let far = view.frames.last().map_or(String::new(), |frame| {
             let state = &frame.state;
             let load = names::load_of(view.model, state.start.leg, state.load_factor);
-            format!("{load}, {}", names::position(state.next))
+            match progress {
+                Some(_) => load,
+                None => format!("{load}, {}", names::position(state.next)),
+            }
         });
         let took = match app.busy.as_secs() {
             0 | 1 => String::new(),
             seconds => format!(", {seconds} s"),
         };
-        let progress = view.attached.and_then(|attached| attached.log.progress());
-        let progress = progress.map_or(String::new(), |text| format!("; {text}"));
+        // The progress of a long step leaves no room for the position.
         let steps = counted(view.frames.len() - 1, "step");
-        let text = format!(" {turn} solving: {far}; {steps} so far{took}{progress}; Ctrl-C stops");
+        let steps = progress.unwrap_or_else(|| format!("{steps} so far"));
+        let text = format!(" {turn} solving: {far}; {steps}{took}; Ctrl-C stops");
+        let text = paint::cut(&text, width as usize);
         let again = view.attached.map_or("", |attached| attached.again);
         let first = (!again.is_empty()).then(|| format!("   {again} first"));
         return [Some(text), first]

@@ -126,7 +126,7 @@ pub fn open(run: CalculixRun, deck: Option<Deck>) -> Result<OpenedRun, String> {
 
 /// Applies the rules to a run. If nothing was ever in contact, the slave nodes of the deck are its contacts.
 fn explained(mut run: CalculixRun, deck: Option<Deck>) -> Result<CalculixRun, String> {
-    let shape = deck.as_ref().map(DeckShape::new);
+    let mut shape = deck.as_ref().map(DeckShape::new);
     if let Some(shape) = shape.as_ref().filter(|_| run.files.slaves.is_empty()) {
         let label = |node: usize| shape.deck.nodes[node].label.try_into().ok();
         let nodes = shape.pairs.iter().flat_map(|pair| &pair.nodes);
@@ -139,6 +139,9 @@ fn explained(mut run: CalculixRun, deck: Option<Deck>) -> Result<CalculixRun, St
             "{}: no contact element in this file, and no deck with contact pairs next to it, so there is nothing to show",
             run.name
         ));
+    }
+    if let (Some(shape), Some(last)) = (&mut shape, run.files.attempts.last()) {
+        shape.failed = (last.step as usize).checked_sub(1);
     }
     run.findings = rules::examine(shape.as_ref(), Some(&run));
     drop(shape);

@@ -33,6 +33,7 @@ const RULES: &[Rule] = &[
     Deck(supports::open_at_start),
     Deck(supports::free_to_slide),
     Deck(supports::beyond_friction),
+    Deck(supports::off_the_contact),
     Deck(pairs::overlap),
     Deck(pairs::stiff_contact),
     Deck(steps::first_increment),

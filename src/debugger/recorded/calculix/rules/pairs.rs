@@ -4,7 +4,8 @@ use super::shape::{DeckShape, PairShape, SortedPoints, SurfaceFace, Vector};
 use super::supports::{is_free, plain, rounded, rounded_up};
 use std::collections::{BTreeMap, BTreeSet};
 use stickslip_core::model::RunFinding;
-use stickslip_exchange::inp::deck::{Direction, Faces, Value};
+use stickslip_exchange::inp::Deck;
+use stickslip_exchange::inp::deck::{Direction, Faces, Pair, Value};
 use stickslip_scene::number::sig4;
 use stickslip_scene::shown::first_of;
 
@@ -17,6 +18,8 @@ const ADVISED: f64 = 20.0;
 const OVERLAP: f64 = 0.01;
 /// Overlap at the start that is reported if supports hold both bodies, in sizes of a slave face.
 const DEEP: f64 = 0.1;
+/// Pressure of an overlap that is not reported, in Young's moduli.
+const LIGHT: f64 = 1e-6;
 /// Slave faces this much larger than master faces are reported.
 const COARSE: f64 = 2.0;
 /// Cosine between a face and the direction to the other surface, above which it looks away.
@@ -109,14 +112,61 @@ fn reversed(
         0 => String::new(),
         count => format!("; {count} of them lie between two elements"),
     };
-    let lines: Vec<String> = elements.iter().map(|e| format!("{e}, {side}")).collect();
-    let cure = match side.as_str() {
-        "?" => format!("list the faces of {} that look at {other}", surface.name),
-        side => format!(
-            "{side} instead of {} in *SURFACE, NAME={} (line {})",
-            label(first.side),
-            surface.name,
-            surface.place.line
+    let line = surface.place.line;
+    let (cure, lines) = match side.as_str() {
+        "?" => {
+            let body = shape.body_of[first.corners[0]];
+            let of_body = |k: &usize| shape.body_of[deck.elements[*k].nodes[0]] == body;
+            let sides = (0..deck.elements.len()).filter(of_body).flat_map(|k| {
+                let sides = 0..deck.elements[k].kind.cell.sides().len();
+                sides.filter_map(move |side| shape.face(k, side))
+            });
+            let outer: Vec<SurfaceFace> = sides.filter(|face| !shape.is_inner(face)).collect();
+            let towards = |face: &SurfaceFace, least: f64| {
+                facing(face, others).is_some_and(|cosine| cosine > least)
+            };
+            let ahead = outer.iter().filter(|face| towards(face, AWAY));
+            let normal: Vector = ahead.map(|face| face.normal).sum();
+            let looks = outer.iter().filter(|face| {
+                face.normal.dot(&normal) > AWAY * normal.norm() && towards(face, 0.0)
+            });
+            let looks: Vec<String> = looks
+                .map(|face| {
+                    format!(
+                        "{}, {}",
+                        deck.elements[face.element].label,
+                        label(face.side)
+                    )
+                })
+                .collect();
+            let name = body.map_or("the body", |body| shape.bodies[body].as_str());
+            match looks.is_empty() {
+                true => (
+                    format!(
+                        "none in *SURFACE: no outer face of {name} looks at {other}; move the nodes of {name}"
+                    ),
+                    String::new(),
+                ),
+                false => (
+                    format!(
+                        "the faces of {name} that look at {other} in *SURFACE, NAME={} (line {line})",
+                        surface.name
+                    ),
+                    looks.join("\n"),
+                ),
+            }
+        }
+        side => (
+            format!(
+                "{side} instead of {} in *SURFACE, NAME={} (line {line})",
+                label(first.side),
+                surface.name
+            ),
+            elements
+                .iter()
+                .map(|e| format!("{e}, {side}"))
+                .collect::<Vec<_>>()
+                .join("\n"),
         ),
     };
     Some(RunFinding {
@@ -129,10 +179,7 @@ fn reversed(
             deck.elements[first.element].label
         ),
         cure,
-        lines: match side.as_str() {
-            "?" => String::new(),
-            _ => lines.join("\n"),
-        },
+        lines,
     })
 }
 
@@ -183,14 +230,17 @@ pub fn overlap(shape: &DeckShape) -> Vec<RunFinding> {
         }
         let deck = shape.deck;
         let pressure = match (shape.stiffness(k), shape.young(pair)) {
-            (Some(stiffness), Some((young, _))) => format!(
-                ", a pressure of {} Young's moduli at once",
-                sig4(-stiffness * deepest.gap / young)
-            ),
-            _ => String::new(),
+            (Some(stiffness), Some((young, _))) => -stiffness * deepest.gap / young,
+            _ => f64::INFINITY,
+        };
+        if pressure < LIGHT {
+            continue;
+        }
+        let pressure = match pressure.is_finite() {
+            true => format!(", a pressure of {} Young's moduli at once", sig4(pressure)),
+            false => String::new(),
         };
         let card = &deck.pairs[k];
-        let kind = if card.faces { "SURFACE" } else { "NODE" };
         found.push(RunFinding {
             rule: "overlap at the start",
             cause: format!(
@@ -207,13 +257,17 @@ pub fn overlap(shape: &DeckShape) -> Vec<RunFinding> {
                 "move the nodes onto the master at the start (*CONTACT PAIR before line {})",
                 card.place.line
             ),
-            lines: format!(
-                "*CONTACT PAIR, INTERACTION={}, TYPE={kind} TO SURFACE, ADJUST=0.",
-                deck.interactions[card.interaction].name
-            ),
+            lines: pair_card(deck, card, ", ADJUST=0."),
         });
     }
     found
+}
+
+/// The card of a contact pair, without SMALL SLIDING and ADJUST.
+pub fn pair_card(deck: &Deck, card: &Pair, more: &str) -> String {
+    let kind = if card.faces { "SURFACE" } else { "NODE" };
+    let law = &deck.interactions[card.interaction].name;
+    format!("*CONTACT PAIR, INTERACTION={law}, TYPE={kind} TO SURFACE{more}")
 }
 
 /// Contact far stiffer than the bodies, along the normal or along the surface.
@@ -294,7 +348,8 @@ pub fn stiff_contact(shape: &DeckShape) -> Vec<RunFinding> {
 pub fn constrained_slaves(shape: &DeckShape) -> Vec<RunFinding> {
     let deck = shape.deck;
     let motions = deck.steps.iter().flat_map(|step| &step.motions);
-    let supports: Vec<&Value> = deck.supports.iter().chain(motions).collect();
+    let supports = deck.supports.iter().chain(motions);
+    let supports: Vec<&Value> = supports.filter(|_| !deck.is_incomplete).collect();
     let mut found = Vec::new();
     let names = |nodes: &BTreeSet<usize>| {
         first_of(
@@ -374,10 +429,13 @@ pub fn constrained_slaves(shape: &DeckShape) -> Vec<RunFinding> {
                     shape.pair_name(pair),
                     names(&nodes)
                 ),
-                cure: format!(
-                    "leave these nodes out of the slave surface {} (line {})",
-                    surface.name, surface.place.line
-                ),
+                cure: match count == own.len() {
+                    true => format!("leave the pair out (line {})", deck.pairs[k].place.line),
+                    false => format!(
+                        "leave these nodes out of the slave surface {} (line {})",
+                        surface.name, surface.place.line
+                    ),
+                },
                 lines: remaining(&own, &nodes, shape, surface.name.as_str()),
             });
         }
@@ -392,7 +450,7 @@ fn support_line(shape: &DeckShape, value: &Value) -> String {
     format!("{label}, {direction}, {direction}, {}", plain(value.value))
 }
 
-/// A surface of the slave nodes without some of them; empty if that leaves none.
+/// A surface of the slave nodes without some of them; a comment if that leaves none.
 fn remaining(
     own: &BTreeMap<usize, Vector>,
     without: &BTreeSet<usize>,
@@ -404,7 +462,7 @@ fn remaining(
         .map(|&node| format!("{},", shape.deck.nodes[node].label))
         .collect();
     match rest.is_empty() {
-        true => String::new(),
+        true => format!("** {name} has no pair of its own"),
         false => format!("*SURFACE, NAME={name}, TYPE=NODE\n{}", rest.join("\n")),
     }
 }

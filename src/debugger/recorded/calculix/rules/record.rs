@@ -113,11 +113,32 @@ pub fn chatter(run: &CalculixRun, shape: Option<&DeckShape>) -> Vec<RunFinding> 
         attempt,
         &often.iter().map(|found| found.slave).collect(),
     );
+    let slaves = often.iter().map(|found| found.slave);
     let softer = shape.and_then(|shape| {
-        let pair = (0..shape.pairs.len()).find(|pair| shape.stiffness(*pair).is_some())?;
+        let mut pairs = slaves.filter_map(|slave| pair_of(run, shape, slave).map(|(_, pair)| pair));
+        let pair = pairs.next().or((!shape.pairs.is_empty()).then_some(0))?;
         let law = &shape.deck.interactions[shape.deck.pairs[pair].interaction];
-        Some((shape.stiffness(pair)?, law.normal_place.line))
+        let line = law.normal_place.line;
+        match (shape.stiffness(pair), shape.young(&shape.pairs[pair])) {
+            (Some(stiffness), _) => Some((
+                format!("a contact stiffness 10 times smaller (line {line})"),
+                plain(rounded(stiffness / 10.0)),
+            )),
+            (None, Some((young, _))) => Some((
+                format!("a stiffness instead of hard contact (line {line})"),
+                format!(
+                    "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n{}",
+                    plain(rounded(10.0 * young / shape.pairs[pair].sizes[0]))
+                ),
+            )),
+            (None, None) => None,
+        }
     });
+    let (cure, lines) = softer.unwrap_or((
+        "a smaller contact stiffness; its line is in the deck, which is not next to the record"
+            .into(),
+        String::new(),
+    ));
     vec![RunFinding {
         rule: "chattering",
         cause: format!(
@@ -127,36 +148,33 @@ pub fn chatter(run: &CalculixRun, shape: Option<&DeckShape>) -> Vec<RunFinding> 
             run.attempt_name(attempt),
             named + &more
         ),
-        cure: match softer {
-            Some((_, line)) => format!("a contact stiffness 10 times smaller (line {line})"),
-            None => "a smaller contact stiffness, or smaller increments".into(),
-        },
-        lines: softer.map_or(String::new(), |(stiffness, _)| {
-            plain(rounded(stiffness / 10.0))
-        }),
+        cure,
+        lines,
     }]
 }
 
-/// Where a slave is: its coordinates and its surface.
-fn place(run: &CalculixRun, shape: &DeckShape, slave: usize) -> Option<String> {
+/// The node of a slave, and its pair; a face has its first corner.
+fn pair_of(run: &CalculixRun, shape: &DeckShape, slave: usize) -> Option<(usize, usize)> {
     let label = match run.files.slaves[slave] {
         Slave::Node(node) => node,
         Slave::Face([first, ..]) => first,
     };
-    let node = shape
-        .deck
-        .nodes
-        .iter()
-        .position(|node| node.label == u64::from(label))?;
+    let mut nodes = shape.deck.nodes.iter();
+    let node = nodes.position(|node| node.label == u64::from(label))?;
+    let of = |pair: &super::shape::PairShape| pair.nodes.iter().any(|own| own.node == node);
+    Some((node, shape.pairs.iter().position(of)?))
+}
+
+/// Where a slave is: its coordinates and its surface.
+fn place(run: &CalculixRun, shape: &DeckShape, slave: usize) -> Option<String> {
+    let (node, pair) = pair_of(run, shape, slave)?;
     let at = shape.at(node);
-    let of = |pair: &&super::shape::PairShape| pair.nodes.iter().any(|own| own.node == node);
-    let pair = shape.pairs.iter().find(of)?;
     Some(format!(
         "at ({}, {}, {}) of {}",
         sig4(at.x),
         sig4(at.y),
         sig4(at.z),
-        shape.pair_name(pair)
+        shape.pair_name(&shape.pairs[pair])
     ))
 }
 
@@ -176,7 +194,7 @@ fn masters(run: &CalculixRun, attempt: usize, slaves: &BTreeSet<usize>) -> Strin
 }
 
 /// Attempts whose correction stays at its cap of 100 % while the residual grows.
-pub fn capped_correction(run: &CalculixRun, _: Option<&DeckShape>) -> Vec<RunFinding> {
+pub fn capped_correction(run: &CalculixRun, shape: Option<&DeckShape>) -> Vec<RunFinding> {
     if ended_converged(run) {
         return Vec::new();
     }
@@ -207,6 +225,26 @@ pub fn capped_correction(run: &CalculixRun, _: Option<&DeckShape>) -> Vec<RunFin
     let Some(&(attempt, count, from, to)) = capped.iter().max_by(|a, b| a.1.cmp(&b.1)) else {
         return Vec::new();
     };
+    let number = run.files.attempts[attempt].step as usize;
+    let step = shape.zip(number.checked_sub(1));
+    let (cure, lines) = match step.and_then(|(shape, k)| shape.deck.steps.get(k)) {
+        Some(step) => {
+            let time = step.time;
+            let [initial, least] = [10.0, 1e4].map(|part| rounded(time.initial / part));
+            (
+                format!(
+                    "the cures above, if there are any; otherwise increments 10 times smaller (line {})",
+                    step.static_place.line
+                ),
+                [initial, time.period, least, initial].map(plain).join(", "),
+            )
+        }
+        None => (
+            "the cures above; smaller increments are in the deck, which is not next to the record"
+                .into(),
+            String::new(),
+        ),
+    };
     vec![RunFinding {
         rule: "capped correction",
         cause: format!(
@@ -216,7 +254,7 @@ pub fn capped_correction(run: &CalculixRun, _: Option<&DeckShape>) -> Vec<RunFin
             sig4(from),
             sig4(to)
         ),
-        cure: "the first cure above; smaller increments alone do not stop it".into(),
-        lines: String::new(),
+        cure,
+        lines,
     }]
 }

@@ -157,6 +157,8 @@ pub struct DeckShape<'d> {
     pub pairs: Vec<PairShape>,
     /// The ties in deck order.
     pub ties: Vec<PairShape>,
+    /// The step that a run failed in; `None` before a run.
+    pub failed: Option<usize>,
     /// How many elements have each face, by its sorted corners.
     faces: HashMap<Vec<usize>, u32>,
 }
@@ -172,6 +174,7 @@ impl<'d> DeckShape<'d> {
             bodies,
             pairs: Vec::new(),
             ties: Vec::new(),
+            failed: None,
             faces: HashMap::new(),
         };
         shape.count_faces();
@@ -205,6 +208,17 @@ impl<'d> DeckShape<'d> {
         shape
     }
 
+    /// The steps that were reached, or all before a run.
+    pub fn reached(&self) -> impl Iterator<Item = (usize, &Step)> {
+        let steps = self.deck.steps.iter().enumerate();
+        steps.take_while(|(k, _)| self.failed.is_none_or(|failed| *k <= failed))
+    }
+
+    /// The step that failed, or all before a run.
+    pub fn suspects(&self) -> impl Iterator<Item = (usize, &Step)> {
+        self.reached().skip(self.failed.unwrap_or(0))
+    }
+
     /// Position of a node.
     pub fn at(&self, node: usize) -> Vector {
         Vector::from(self.deck.nodes[node].at)
@@ -235,10 +249,22 @@ impl<'d> DeckShape<'d> {
             .is_some_and(|n| *n > 1)
     }
 
-    /// The smallest set of exactly these nodes, or the first node.
+    /// The set of exactly these nodes; or the largest among them without slave nodes; or the first node.
     pub fn set_name(&self, nodes: &BTreeSet<usize>) -> String {
-        let is_same = |set: &&Set| set.members.iter().eq(nodes);
-        let set = self.deck.node_sets.iter().find(is_same);
+        let is_slave = |node: &usize| {
+            let mut pairs = self.pairs.iter();
+            pairs.any(|pair| pair.nodes.binary_search_by_key(node, |n| n.node).is_ok())
+        };
+        let is_part = |set: &&Set| {
+            set.members.iter().eq(nodes)
+                || set
+                    .members
+                    .iter()
+                    .all(|node| nodes.contains(node) && !is_slave(node))
+        };
+        let sets = self.deck.node_sets.iter().filter(is_part);
+        let set = sets.rev().max_by_key(|set| set.members.len());
+        let set = set.filter(|set| !set.members.is_empty());
         let first = nodes
             .first()
             .map(|&node| self.deck.nodes[node].label.to_string());
@@ -420,9 +446,12 @@ impl<'d> DeckShape<'d> {
         (faces, centres): (&[SurfaceFace], &SortedPoints),
     ) -> Option<(usize, f64, f64)> {
         let largest = faces.iter().map(|face| face.radius).fold(0.0, f64::max);
+        let tie = 1e-9 * largest;
         let mut best: Option<(f64, usize, Vector)> = None;
+        // Faces with the same closest point: the point is on an edge between them, and they share the normal.
+        let mut normal = Vector::zeros();
         for (along, k) in centres.from(point) {
-            let is_farther = |least: f64| best.is_some_and(|(distance, ..)| least >= distance);
+            let is_farther = |least: f64| best.is_some_and(|(distance, ..)| least > distance + tie);
             if is_farther(along - largest) {
                 break;
             }
@@ -433,14 +462,17 @@ impl<'d> DeckShape<'d> {
             let at: Vec<Vector> = face.corners.iter().map(|&node| self.at(node)).collect();
             let closest = closest(point, &at);
             let distance = (point - closest).norm();
-            if best.is_none_or(|(known, ..)| distance < known) {
-                best = Some((distance, k, closest));
+            match best {
+                Some((known, ..)) if (distance - known).abs() <= tie => normal += face.normal,
+                Some((known, ..)) if distance > known => {}
+                _ => (best, normal) = (Some((distance, k, closest)), face.normal),
             }
         }
         let (_, k, closest) = best?;
         let off = point - closest;
-        let gap = off.dot(&faces[k].normal);
-        Some((k, gap, (off - gap * faces[k].normal).norm()))
+        let normal = normal.try_normalize(1e-12).unwrap_or(faces[k].normal);
+        let gap = off.dot(&normal);
+        Some((k, gap, (off - gap * normal).norm()))
     }
 
     /// Factor of a load or displacement of a step at a time of the step.

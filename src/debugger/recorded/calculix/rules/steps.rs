@@ -1,5 +1,6 @@
 //! Rules on steps: how far prescribed displacements move contacts per increment and in all, and whether increments can be cut.
 
+use super::pairs::pair_card;
 use super::shape::{DeckShape, PairShape, Vector};
 use super::supports::{plain, rounded};
 use std::collections::HashMap;
@@ -59,12 +60,11 @@ fn relative(shape: &DeckShape, step: usize, pair: &PairShape, times: [f64; 2]) -
     slave - master
 }
 
-/// Steps and pairs, with the number of the step.
+/// The steps that may be the cause, with each pair and their numbers.
 fn moves<'s>(
     shape: &'s DeckShape,
 ) -> impl Iterator<Item = (usize, &'s Step, usize, &'s PairShape)> {
-    let steps = shape.deck.steps.iter().enumerate();
-    steps.flat_map(|(k, step)| {
+    shape.suspects().flat_map(|(k, step)| {
         let pairs = shape.pairs.iter().enumerate();
         pairs.map(move |(number, pair)| (k, step, number, pair))
     })
@@ -100,25 +100,40 @@ pub fn first_increment(shape: &DeckShape) -> Vec<RunFinding> {
 
 /// Steps whose increments can hardly be cut.
 pub fn no_cuts(shape: &DeckShape) -> Vec<RunFinding> {
-    let steps = shape.deck.steps.iter().enumerate();
-    let fixed = steps.filter_map(|(k, step)| {
+    let fixed = shape.suspects().filter_map(|(k, step)| {
         let time = step.time;
-        let least = time.least.filter(|least| *least > CUT * time.initial)?;
+        let line = step.static_place.line;
+        let times = [time.initial, time.period, rounded(time.initial / 1000.0)];
+        let times: Vec<String> = times.into_iter().chain(time.most).map(plain).collect();
+        // Before a run, DIRECT is taken as intended.
+        let (why, cure, lines) = match time.direct {
+            true if shape.failed.is_none() => return None,
+            true => (
+                format!("have the fixed size {} (DIRECT)", plain(time.initial)),
+                format!("*STATIC without DIRECT, and a minimum (before line {line})"),
+                format!("*STATIC\n{}", times.join(", ")),
+            ),
+            false => {
+                let least = time.least.filter(|least| *least > CUT * time.initial)?;
+                (
+                    format!(
+                        "start at {} and must not fall below {}",
+                        plain(time.initial),
+                        plain(least)
+                    ),
+                    format!("a smaller minimum (line {line})"),
+                    times.join(", "),
+                )
+            }
+        };
         Some(RunFinding {
             rule: "no room for cuts",
             cause: format!(
-                "increments of step {} start at {} and must not fall below {}: after the first failure the run stops",
-                k + 1,
-                plain(time.initial),
-                plain(least)
+                "increments of step {} {why}: after the first failure the run stops",
+                k + 1
             ),
-            cure: format!("a smaller minimum (line {})", step.static_place.line),
-            lines: [time.initial, time.period, rounded(time.initial / 1000.0)]
-                .into_iter()
-                .chain(time.most)
-                .map(plain)
-                .collect::<Vec<_>>()
-                .join(", "),
+            cure,
+            lines,
         })
     });
     fixed.collect()
@@ -144,13 +159,20 @@ pub fn small_sliding(shape: &DeckShape) -> Vec<RunFinding> {
                     "leave SMALL SLIDING out (*CONTACT PAIR before line {})",
                     card.place.line
                 ),
-                String::new(),
+                pair_card(shape.deck, card, ""),
             ),
-            false => (
-                "the step has no NLGEOM",
-                format!("large displacements (line {})", step.place.line),
-                "*STEP, NLGEOM".to_owned(),
-            ),
+            false => {
+                let most = step.increments;
+                let most = most.map_or(String::new(), |most| format!(", INC={most}"));
+                (
+                    "the step has no NLGEOM",
+                    format!(
+                        "large displacements in all steps (line {})",
+                        step.place.line
+                    ),
+                    format!("*STEP, NLGEOM{most}"),
+                )
+            }
         };
         found.push(RunFinding {
             rule: "small displacements",
@@ -173,7 +195,7 @@ pub fn past_the_edge(shape: &DeckShape) -> Vec<RunFinding> {
     let mut found = Vec::new();
     for (number, pair) in shape.pairs.iter().enumerate() {
         let mut moved = Vector::zeros();
-        for (k, step) in shape.deck.steps.iter().enumerate() {
+        for (k, step) in shape.reached() {
             moved += relative(shape, k, pair, [0.0, step.time.period]);
             let normal = pair.normal();
             let along = moved - moved.dot(&normal) * normal;
@@ -225,13 +247,14 @@ pub fn past_the_edge(shape: &DeckShape) -> Vec<RunFinding> {
     found
 }
 
-/// The lines of a step's displacements of a slave, scaled.
+/// The lines of a step's displacements of both bodies of a pair, scaled.
 fn shorter(shape: &DeckShape, step: usize, pair: usize, part: f64) -> String {
     let mut lines: Vec<String> = Vec::new();
     let step = &shape.deck.steps[step];
     let mut places: Vec<_> = Vec::new();
     for value in step.motions.iter().filter(|value| value.value != 0.0) {
-        let own = shape.group(value.node) == Some(shape.pairs[pair].groups[0]);
+        let own = shape.group(value.node);
+        let own = own.is_some_and(|own| shape.pairs[pair].groups.contains(&own));
         if !own || places.contains(&(value.place, value.direction)) {
             continue;
         }

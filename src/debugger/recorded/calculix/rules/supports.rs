@@ -1,7 +1,8 @@
 //! Rigid motions that supports and closed contacts leave to a body, and the loads that act along them.
 
-use super::shape::{DeckShape, PairShape, Vector};
+use super::shape::{DeckShape, PairShape, SlaveGap, Vector};
 use nalgebra::{SMatrix, SVector};
+use std::collections::hash_map::Entry;
 use std::collections::{BTreeSet, HashMap};
 use stickslip_core::model::RunFinding;
 use stickslip_exchange::inp::deck::{Direction, Step, Value, Volume};
@@ -14,6 +15,12 @@ type Motion = SVector<f64, 6>;
 const FREE: f64 = 1e-9;
 /// Part of a load along a free motion, relative to the load, above which it moves the body.
 const LOADED: f64 = 1e-6;
+/// Cosine between normals of a contact that counts as flat.
+const FLAT: f64 = 0.99;
+/// Distance beyond the edge of a contact at which loads tip a body over, in sizes of a slave face. CalculiX' contact also pulls a bit.
+const EDGE: f64 = 0.1;
+/// Directions in which the edge of a contact is looked for.
+const DIRECTIONS: usize = 72;
 
 /// A group of bodies with what supports and loads it in the first step.
 struct GroupMotion {
@@ -47,11 +54,11 @@ impl GroupMotion {
                 this.hold(shape.at(value.node), along);
             }
         }
-        for (node, at, force) in forces(shape, 0) {
-            if shape.group(node) == Some(group) {
-                this.load += this.motion(at, force);
-                this.force += force;
-                this.loaded.insert(node);
+        for force in forces(shape, 0) {
+            if shape.group(force.nodes[0]) == Some(group) {
+                this.load += this.motion(force.at, force.along);
+                this.force += force.along;
+                this.loaded.extend(force.nodes);
             }
         }
         this
@@ -118,8 +125,18 @@ fn supports<'s>(shape: &'s DeckShape) -> impl Iterator<Item = &'s Value> {
     shape.deck.supports.iter().chain(motions)
 }
 
-/// The forces at the end of a step: a node, the point, and the force.
-fn forces(shape: &DeckShape, step: usize) -> Vec<(usize, Vector, Vector)> {
+/// A point load, or the resultant of a load on a side or an element.
+struct Force {
+    /// The kind of load, and its node, or its element and side.
+    of: [usize; 3],
+    /// The nodes that it acts on; at least one.
+    nodes: Vec<usize>,
+    at: Vector,
+    along: Vector,
+}
+
+/// The forces at the end of a step.
+fn forces(shape: &DeckShape, step: usize) -> Vec<Force> {
     let deck = shape.deck;
     let Some(step) = deck.steps.get(step) else {
         return Vec::new();
@@ -131,14 +148,23 @@ fn forces(shape: &DeckShape, step: usize) -> Vec<(usize, Vector, Vector)> {
     let mut all = Vec::new();
     for force in &step.forces {
         let along = axis(force.direction).map(|along| along * force.value * part(force.amplitude));
-        all.extend(along.map(|along| (force.node, shape.at(force.node), along)));
+        all.extend(along.map(|along| Force {
+            of: [0, force.node, 0],
+            nodes: vec![force.node],
+            at: shape.at(force.node),
+            along,
+        }));
     }
     for pressure in &step.pressures {
-        if let Some(face) = shape.face(pressure.element, pressure.side)
-            && let Some(&node) = face.corners.first()
-        {
+        if let Some(face) = shape.face(pressure.element, pressure.side) {
             let size = -pressure.value * face.area * part(pressure.amplitude);
-            all.push((node, face.centre, face.normal * size));
+            let (corners, middles) = deck.face(pressure.element, pressure.side);
+            all.push(Force {
+                of: [1, pressure.element, pressure.side],
+                nodes: [corners, middles].concat(),
+                at: face.centre,
+                along: face.normal * size,
+            });
         }
     }
     for weight in &step.weights {
@@ -146,7 +172,7 @@ fn forces(shape: &DeckShape, step: usize) -> Vec<(usize, Vector, Vector)> {
         let faces = (0..element.kind.cell.sides().len())
             .filter_map(|side| shape.face(weight.element, side));
         let faces: Vec<_> = faces.collect();
-        let (Some(&node), Some(first)) = (element.nodes.first(), faces.first()) else {
+        let Some(first) = faces.first() else {
             continue;
         };
         let parts = faces
@@ -161,11 +187,12 @@ fn forces(shape: &DeckShape, step: usize) -> Vec<(usize, Vector, Vector)> {
                 Vector::from(acceleration) * density.unwrap_or(0.0)
             }
         };
-        all.push((
-            node,
-            shape.at(node),
-            per_volume * volume * part(weight.amplitude),
-        ));
+        all.push(Force {
+            of: [2, weight.element, 0],
+            nodes: element.nodes.clone(),
+            at: faces.iter().map(|face| face.centre).sum::<Vector>() / faces.len() as f64,
+            along: per_volume * volume * part(weight.amplitude),
+        });
     }
     all
 }
@@ -277,7 +304,7 @@ pub fn open_at_start(shape: &DeckShape) -> Vec<RunFinding> {
         let force = motion.force;
         let set = shape.set_name(&motion.loaded);
         let along = force.iamax();
-        let travel = rounded(1.5 * node.gap).copysign(force[along]);
+        let travel = rounded_up(1.2 * node.gap).copysign(force[along]);
         let modes = shape.modes(group);
         let others = (0..3).filter(|k| modes[*k] && *k != along);
         let others: String = others
@@ -354,59 +381,198 @@ fn free_groups(
     groups(shape).into_iter().filter_map(of).collect()
 }
 
-/// A body that only contact holds, with a tangential load above what friction can bear.
-pub fn beyond_friction(shape: &DeckShape) -> Vec<RunFinding> {
-    if shape.deck.is_incomplete {
-        return Vec::new();
+/// The loads at the end of a step on a body that a single, flat pair holds.
+struct Resting<'s> {
+    pair: usize,
+    group: usize,
+    step: usize,
+    motion: &'s GroupMotion,
+    free: &'s [Motion],
+    /// Normal of the contact, into the body.
+    normal: Vector,
+    force: Vector,
+    /// About the mean of the contact's nodes.
+    moment: Vector,
+    /// The contact's nodes, from their mean.
+    at: &'s [Vector],
+    mean: Vector,
+    /// The loaded nodes.
+    loaded: BTreeSet<usize>,
+}
+
+impl Resting<'_> {
+    /// Whether supports leave a motion free, at least as a translation, or as a rotation about an axis through a point.
+    fn is_free(&self, along: Vector, about: Option<Vector>) -> bool {
+        let motion = match about {
+            None => self.motion.motion(self.motion.centre, along),
+            Some(point) => {
+                let shift = along.cross(&(self.motion.centre - point));
+                let turn = along * self.motion.size;
+                Motion::from_iterator(shift.iter().chain(turn.iter()).copied())
+            }
+        };
+        let motion = motion.normalize();
+        let part: f64 = self.free.iter().map(|m| m.dot(&motion).powi(2)).sum();
+        part > 1.0 - 1e-6
     }
-    let mut found = Vec::new();
-    for (k, pair) in shape.pairs.iter().enumerate() {
-        let group = pair.groups[0];
-        let law = &shape.deck.interactions[shape.deck.pairs[k].interaction];
-        let (normal, motion) = (pair.normal(), GroupMotion::new(shape, group));
-        let alone = pairs_of(shape, group).count() == 1;
-        if !alone || law.friction == 0.0 || normal == Vector::zeros() {
-            continue;
+
+    /// The first finding on a step of each body that rests on a single pair.
+    fn findings(
+        shape: &DeckShape,
+        finding: impl Fn(&Resting) -> Option<RunFinding>,
+    ) -> Vec<RunFinding> {
+        if shape.deck.is_incomplete {
+            return Vec::new();
         }
-        let free = motion.free(shape.modes(group));
-        let mut total: HashMap<usize, Vector> = HashMap::new();
-        for (number, step) in shape.deck.steps.iter().enumerate() {
-            add_forces(shape, group, (number, step), &mut total);
-            let sum: Vector = total.values().sum();
-            let pressed = -sum.dot(&normal);
-            let along = sum + pressed * normal;
-            let limit = law.friction * pressed.max(0.0);
-            let slide = motion.motion(motion.centre, along).normalize();
-            let slides: f64 = free.iter().map(|m| m.dot(&slide).powi(2)).sum();
-            if along.norm() <= limit * (1.0 + 1e-6) || pressed <= 0.0 || slides < 1.0 - 1e-6 {
+        let mut found = Vec::new();
+        for (k, pair) in shape.pairs.iter().enumerate() {
+            let normal = pair.normal();
+            let touching = pair.nodes.iter();
+            let touching = touching.filter(|node| node.beyond <= 0.1 * pair.sizes[0]);
+            let is_flat = |node: &SlaveGap| pair.masters[node.face].normal.dot(&normal) > FLAT;
+            let touching: Vec<&SlaveGap> = touching.collect();
+            if touching.is_empty() || !touching.iter().all(|node| is_flat(node)) {
                 continue;
             }
-            let needed = rounded_up(along.norm() / pressed);
-            let stick = law
-                .stick
-                .map_or(String::new(), |slope| format!(", {}", plain(slope)));
-            let line = law.friction_place.line;
-            found.push(RunFinding {
-                rule: "load above friction",
-                cause: format!(
-                    "step {} pushes {} along {} with {}, but friction holds at most {} x {} = {}: it slides away",
-                    number + 1,
-                    shape.group_name(group),
-                    shape.pair_name(pair),
-                    sig4(along.norm()),
-                    sig4(law.friction),
-                    sig4(pressed),
-                    sig4(limit)
-                ),
-                cure: format!(
-                    "prescribe the displacement instead of the force, or a friction of at least {needed} (line {line})"
-                ),
-                lines: format!("{needed}{stick}"),
-            });
-            break;
+            let at = touching.iter().map(|node| shape.at(node.node));
+            let mean = at.clone().sum::<Vector>() / touching.len() as f64;
+            let at: Vec<Vector> = at.map(|at| at - mean).collect();
+            for (group, normal) in [(pair.groups[0], normal), (pair.groups[1], -normal)] {
+                let motion = GroupMotion::new(shape, group);
+                let free = motion.free(shape.modes(group));
+                if free.is_empty() || pairs_of(shape, group).count() != 1 {
+                    continue;
+                }
+                let mut total = HashMap::new();
+                let steps = shape.reached();
+                // Later displacements drive the body.
+                let driven = |step: &Step| {
+                    let mut motions = step.motions.iter();
+                    motions.any(|value| shape.group(value.node) == Some(group))
+                };
+                let resting = steps.take_while(|(number, step)| *number == 0 || !driven(step));
+                found.extend(resting.into_iter().find_map(|(number, step)| {
+                    add_forces(shape, group, (number, step), &mut total);
+                    finding(&Resting {
+                        pair: k,
+                        group,
+                        step: number + 1,
+                        motion: &motion,
+                        free: &free,
+                        normal,
+                        force: total.values().map(|force| force.along).sum(),
+                        moment: total.values().map(|f| (f.at - mean).cross(&f.along)).sum(),
+                        at: &at,
+                        mean,
+                        loaded: total.values().flat_map(|f| f.nodes.clone()).collect(),
+                    })
+                }));
+            }
         }
+        found
     }
-    found
+}
+
+/// A body that only contact holds, with a tangential load above what friction can bear.
+pub fn beyond_friction(shape: &DeckShape) -> Vec<RunFinding> {
+    Resting::findings(shape, |rest| {
+        let pair = &shape.pairs[rest.pair];
+        let law = &shape.deck.interactions[shape.deck.pairs[rest.pair].interaction];
+        let pressed = -rest.force.dot(&rest.normal);
+        let along = rest.force + pressed * rest.normal;
+        let limit = law.friction * pressed.max(0.0);
+        if law.friction == 0.0
+            || along.norm() <= limit * (1.0 + 1e-6)
+            || pressed <= 0.0
+            || !rest.is_free(along, None)
+        {
+            return None;
+        }
+        let needed = rounded_up(along.norm() / pressed);
+        let stick = law
+            .stick
+            .map_or(String::new(), |slope| format!(", {}", plain(slope)));
+        let line = law.friction_place.line;
+        Some(RunFinding {
+            rule: "load above friction",
+            cause: format!(
+                "step {} pushes {} along {} with {}, but friction holds at most {} x {} = {}: it slides away",
+                rest.step,
+                shape.group_name(rest.group),
+                shape.pair_name(pair),
+                sig4(along.norm()),
+                sig4(law.friction),
+                sig4(pressed),
+                sig4(limit)
+            ),
+            cure: format!(
+                "prescribe the displacement instead of the force, or a friction of at least {needed} (line {line})"
+            ),
+            lines: format!("{needed}{stick}"),
+        })
+    })
+}
+
+/// A body that only contact holds, pulled off it, or tipped over an edge of the contact.
+pub fn off_the_contact(shape: &DeckShape) -> Vec<RunFinding> {
+    Resting::findings(shape, |rest| {
+        let (name, normal) = (shape.group_name(rest.group), rest.normal);
+        let pair = &shape.pairs[rest.pair];
+        let pressed = -rest.force.dot(&normal);
+        // Loaded nodes far from the contact.
+        let height = |node: &usize| (shape.at(*node) - rest.mean).dot(&normal);
+        let most = rest.loaded.iter().map(height).fold(0.0, f64::max);
+        let far = rest.loaded.iter().copied();
+        let set = shape.set_name(&far.filter(|node| height(node) > 0.75 * most).collect());
+        let hold = |first: usize, last: usize| format!("*BOUNDARY\n{set}, {first}, {last}, 0.");
+        if pressed <= -LOADED * rest.force.norm() && rest.is_free(normal, None) {
+            let axes = if shape.deck.is_solid() { 3 } else { 2 };
+            return Some(RunFinding {
+                rule: "pulled off",
+                cause: format!(
+                    "step {} pulls {name} off its only contact, {}, with the force {}: nothing else holds it",
+                    rest.step,
+                    shape.pair_name(pair),
+                    sig4(-pressed)
+                ),
+                cure: format!("prescribe the displacement of {set}, or load it less"),
+                lines: hold(1, axes),
+            });
+        }
+        if pressed <= 0.0 {
+            return None;
+        }
+        // Where the resultant meets the contact, against the edge of the contact in each direction.
+        let meets = rest.moment.cross(&normal) / pressed;
+        let across = normal.cross(&Vector::ith(normal.iamin(), 1.0)).normalize();
+        let directions = (0..DIRECTIONS).map(|k| {
+            let angle = std::f64::consts::TAU * k as f64 / DIRECTIONS as f64;
+            across * angle.cos() + normal.cross(&across) * angle.sin()
+        });
+        let beyond = directions.map(|to| {
+            let edge = rest.at.iter().map(|at| at.dot(&to));
+            let edge = edge.fold(f64::NEG_INFINITY, f64::max);
+            (meets.dot(&to) - edge, edge, to)
+        });
+        let (beyond, edge, to) = beyond.max_by(|a, b| a.0.total_cmp(&b.0))?;
+        let axis = normal.cross(&to);
+        if beyond <= EDGE * pair.sizes[0] || !rest.is_free(axis, Some(rest.mean + edge * to)) {
+            return None;
+        }
+        let held = to.iamax() + 1;
+        Some(RunFinding {
+            rule: "tipping over",
+            cause: format!(
+                "the loads of step {} on {name} meet {} at {} beyond its edge, in direction {}: it tips over",
+                rest.step,
+                shape.pair_name(pair),
+                sig4(beyond),
+                vector(to)
+            ),
+            cure: format!("guide {set} in this direction, or load it less"),
+            lines: hold(held, held),
+        })
+    })
 }
 
 /// Adds the forces of a step to those of the steps before.
@@ -414,23 +580,32 @@ fn add_forces(
     shape: &DeckShape,
     group: usize,
     (number, step): (usize, &Step),
-    total: &mut HashMap<usize, Vector>,
+    total: &mut HashMap<[usize; 3], Force>,
 ) {
     if step.new_forces {
         total.clear();
     }
-    let mut here: HashMap<usize, Vector> = HashMap::new();
-    for (node, _, force) in forces(shape, number) {
-        if shape.group(node) == Some(group) {
-            *here.entry(node).or_insert_with(Vector::zeros) += force;
+    let mut here: HashMap<[usize; 3], Force> = HashMap::new();
+    for force in forces(shape, number) {
+        if shape.group(force.nodes[0]) == Some(group) {
+            match here.entry(force.of) {
+                Entry::Occupied(mut known) => known.get_mut().along += force.along,
+                Entry::Vacant(entry) => {
+                    entry.insert(force);
+                }
+            }
         }
     }
-    for (node, force) in here {
+    for (of, force) in here {
         // A step replaces the components that it gives.
-        let before = total.entry(node).or_insert_with(Vector::zeros);
-        (0..3)
-            .filter(|k| force[*k] != 0.0)
-            .for_each(|k| before[k] = force[k]);
+        match total.entry(of) {
+            Entry::Occupied(mut known) => (0..3)
+                .filter(|k| force.along[*k] != 0.0)
+                .for_each(|k| known.get_mut().along[k] = force.along[k]),
+            Entry::Vacant(entry) => {
+                entry.insert(force);
+            }
+        }
     }
 }
 
