@@ -99,6 +99,17 @@ pub struct FinishedRun {
     pub correction_limit: f64,
     /// Why it did not converge, most likely causes first.
     pub findings: Vec<RunFinding>,
+    /// Its contact surfaces; empty without its input.
+    pub shape: RunShape,
+}
+
+/// The contact surfaces of a finished run, undeformed.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct RunShape {
+    /// Corners of the faces of the masters and of the slaves.
+    pub faces: [Vec<Vec<[f64; 3]>>; 2],
+    /// Positions of the slaves; `None` if they are not in the input.
+    pub slaves: Vec<Option<[f64; 3]>>,
 }
 
 /// A cause of a failed run, found by a rule.

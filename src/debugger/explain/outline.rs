@@ -43,8 +43,15 @@ impl Projection {
 
     /// A point or vector on the sheet; in the plane its x and y.
     pub fn flat(self, model: &Model, [x, y, z]: [f64; 3]) -> Point {
+        match model.space {
+            None => [x, y],
+            Some(_) => self.sheet([x, y, z]),
+        }
+    }
+
+    /// A point or vector in space on the sheet.
+    pub fn sheet(self, [x, y, z]: [f64; 3]) -> Point {
         match self {
-            _ if model.space.is_none() => [x, y],
             Projection::Oblique => [x + 0.5 * y, z + 0.35 * y],
             Projection::Top => [x, y],
             Projection::Side => [x, z],

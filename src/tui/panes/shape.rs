@@ -3,7 +3,7 @@
 //! nodes, and slave nodes by the letters of their modes. Solids show the boundaries between materials, and their elements if these
 //! are large enough. Small displacements are magnified.
 
-use super::frame;
+use super::{frame, run_shape};
 use crate::app::App;
 use crate::camera::Camera;
 use crate::canvas::{Canvas, Dot};
@@ -62,12 +62,9 @@ const SPACING: f64 = 16.0;
 
 /// Draws the shape.
 pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
-    let theme = &app.theme;
     let inner = frame(buffer, area, Pane::Shape, "Shape", app);
-    if view.model.finished.is_some() {
-        let none = "The files of this run contain no coordinates.";
-        let lines = paint::wrapped(none, inner.width.into(), theme.faint);
-        return paint::lines(buffer, inner, &lines);
+    if let Some(run) = &view.model.finished {
+        return run_shape::draw(buffer, inner, run, app, view);
     }
     if let (Some(shown), 2..) = (picture(buffer, inner, app, view), inner.height) {
         let moves = found(view).is_some_and(|found| !found.arrows.is_empty());
@@ -170,7 +167,7 @@ pub fn slave_at(area: Rect, app: &App, view: &View, at: Position) -> Option<usiz
 }
 
 /// The map from the scene to dots: uniform scale, y upwards.
-struct Window {
+pub(super) struct Window {
     middle: Point,
     /// Dots per unit length.
     scale: f64,
@@ -184,7 +181,7 @@ struct Window {
 
 impl Window {
     /// Zooming keeps `towards` (the selected node) visible; the whole shape is centred.
-    fn new(canvas: &Canvas, bounds: &Bounds, camera: &Camera, towards: Option<Point>) -> Self {
+    pub fn new(canvas: &Canvas, bounds: &Bounds, camera: &Camera, towards: Option<Point>) -> Self {
         let size = canvas.size();
         let [width, height] = bounds.size().map(|side| side.max(1e-300));
         let whole = (size[0] / width).min(size[1] / height) * 0.94;
@@ -216,7 +213,8 @@ impl Window {
         (0..2).all(|axis| dot[axis] > -size && dot[axis] < self.size[axis] + size)
     }
 
-    fn dot(&self, point: Point) -> Dot {
+    /// The dot at a point of the sheet.
+    pub fn dot(&self, point: Point) -> Dot {
         let x = 0.5 * self.size[0] + (point[0] - self.middle[0]) * self.scale;
         let y = 0.5 * self.size[1] - (point[1] - self.middle[1]) * self.scale;
         [x, y]

@@ -108,6 +108,7 @@ pub fn open(run: CalculixRun, deck: Option<Deck>) -> Result<OpenedRun, String> {
             .collect(),
         correction_limit: run::CORRECTION_LIMIT / 100.0,
         findings: run.findings.clone(),
+        shape: run.shape.clone(),
     });
     let log = Log::default();
     // The status line already shows the first line.
@@ -144,6 +145,9 @@ fn explained(mut run: CalculixRun, deck: Option<Deck>) -> Result<CalculixRun, St
         shape.failed = (last.step as usize).checked_sub(1);
     }
     run.findings = rules::examine(shape.as_ref(), Some(&run));
+    if let Some(shape) = &shape {
+        run.shape = shape.drawn(&run.files.slaves);
+    }
     drop(shape);
     run.deck = deck;
     Ok(run)

@@ -2,7 +2,7 @@
 
 use super::cycle::{self, Cycle};
 use std::fmt::Write;
-use stickslip_core::model::RunFinding;
+use stickslip_core::model::{RunFinding, RunShape};
 use stickslip_exchange::calculix::cel::{ClosedContact, Slave};
 use stickslip_exchange::calculix::cvg::Norms;
 use stickslip_exchange::calculix::files::{CalculixFiles, End};
@@ -23,6 +23,8 @@ pub struct CalculixRun {
     pub deck: Option<Deck>,
     /// Why the run did not converge, by the rules.
     pub findings: Vec<RunFinding>,
+    /// The contact surfaces of the deck.
+    pub shape: RunShape,
     /// The attempt of each iteration.
     attempts: Vec<usize>,
     /// The largest number of contact elements of each slave.
@@ -104,6 +106,7 @@ impl CalculixRun {
             name: name.into(),
             deck: None,
             findings: Vec::new(),
+            shape: RunShape::default(),
             cycles: files.attempts.iter().map(cycle).collect(),
             switching,
             files,

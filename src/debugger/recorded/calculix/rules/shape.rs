@@ -2,6 +2,8 @@
 
 use nalgebra::Vector3;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
+use stickslip_core::model::RunShape;
+use stickslip_exchange::calculix::cel::Slave;
 use stickslip_exchange::inp::Deck;
 use stickslip_exchange::inp::deck::{Adjust, Element, Faces, Family, Normal, Set, Step};
 
@@ -217,6 +219,34 @@ impl<'d> DeckShape<'d> {
     /// The step that failed, or all before a run.
     pub fn suspects(&self) -> impl Iterator<Item = (usize, &Step)> {
         self.reached().skip(self.failed.unwrap_or(0))
+    }
+
+    /// The faces of all pairs and ties, and the positions of slaves.
+    pub fn drawn(&self, slaves: &[Slave]) -> RunShape {
+        let labels: HashMap<u64, usize> = (0..self.deck.nodes.len())
+            .map(|node| (self.deck.nodes[node].label, node))
+            .collect();
+        let find = |label: &u32| labels.get(&u64::from(*label)).map(|&node| self.at(node));
+        let place = |slave: &Slave| match slave {
+            Slave::Node(node) => find(node).map(Into::into),
+            Slave::Face(corners) => {
+                let corners: Option<Vec<Vector>> = corners.iter().map(find).collect();
+                corners.and_then(|corners| mean(&corners)).map(Into::into)
+            }
+        };
+        let corners =
+            |face: &SurfaceFace| face.corners.iter().map(|&n| self.at(n).into()).collect();
+        let pairs = || self.pairs.iter().chain(&self.ties);
+        RunShape {
+            faces: [
+                pairs()
+                    .flat_map(|pair| &pair.masters)
+                    .map(corners)
+                    .collect(),
+                pairs().flat_map(|pair| &pair.slaves).map(corners).collect(),
+            ],
+            slaves: slaves.iter().map(place).collect(),
+        }
     }
 
     /// Position of a node.
