@@ -38,6 +38,7 @@ pub mod panes;
 mod prompts;
 #[cfg(feature = "terminal")]
 pub mod run;
+mod run_shape;
 pub mod screen;
 pub mod screenshot;
 mod scroll;
@@ -46,6 +47,7 @@ pub mod terminal;
 pub mod theme;
 pub mod view;
 mod waiting;
+mod window;
 
 pub use app::{App, Effect};
 pub use debugger::{Debugger, after_keys, screen};

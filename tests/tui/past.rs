@@ -192,6 +192,29 @@ fn the_cure_of_the_diagnosis_is_copied_as_lines_of_the_deck() {
 }
 
 #[test]
+fn the_shape_shows_the_surfaces_of_the_deck_from_the_chosen_side() {
+    let mut debugger = debugger("causes/stiff");
+    let mut sides = Vec::new();
+    for side in ["oblique", "top", "side"] {
+        let shown = debugger.text(120, 40);
+        assert!(
+            shown.contains(&format!("{side} view (V)   faint: master")),
+            "{shown}"
+        );
+        let dots: String = shown
+            .chars()
+            .filter(|c| ('\u{2801}'..='\u{28ff}').contains(c))
+            .collect();
+        assert!(
+            !sides.contains(&dots) && dots.chars().count() > 20,
+            "{shown}"
+        );
+        sides.push(dots);
+        debugger.type_keys("V");
+    }
+}
+
+#[test]
 fn any_size_shows_something_and_none_panics() {
     let pages: Vec<String> = (0..9).map(|tabs| "Tab ".repeat(tabs) + "z").collect();
     for name in ["pinned-beam", "two-blocks"] {

@@ -14,7 +14,6 @@ pub mod manual;
 pub mod nodes;
 pub mod remedies;
 pub mod residual;
-mod run_shape;
 pub mod shape;
 pub mod solver;
 pub mod status;

@@ -3,14 +3,16 @@
 //! nodes, and slave nodes by the letters of their modes. Solids show the boundaries between materials, and their elements if these
 //! are large enough. Small displacements are magnified.
 
-use super::{frame, run_shape};
+use super::frame;
 use crate::app::App;
 use crate::camera::Camera;
 use crate::canvas::{Canvas, Dot};
 use crate::layout::Pane;
 use crate::paint;
+use crate::run_shape;
 use crate::theme::{self, Theme};
 use crate::view::View;
+use crate::window::Window;
 use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::{Margin, Position, Rect};
 use ratatui::style::{Modifier, Style};
@@ -24,9 +26,7 @@ use stickslip_core::model::{BodyKind, Contact, Model, Solid};
 use stickslip_debugger::explain::conditions::{ConditionArrow, Conditions, Given, conditions};
 use stickslip_debugger::explain::examination::Examination;
 use stickslip_debugger::explain::names;
-use stickslip_debugger::explain::outline::{
-    self, Bounds, Point, Projection, bounds, curve, outer_nodes,
-};
+use stickslip_debugger::explain::outline::{self, Point, bounds, curve, outer_nodes};
 use stickslip_debugger::explain::strain;
 use stickslip_scene::number;
 use unicode_width::UnicodeWidthStr;
@@ -164,61 +164,6 @@ pub fn slave_at(area: Rect, app: &App, view: &View, at: Position) -> Option<usiz
     };
     let near = view.model.contacts.iter().enumerate().filter_map(far);
     near.min().map(|(_, slave)| slave)
-}
-
-/// The map from the scene to dots: uniform scale, y upwards.
-pub(super) struct Window {
-    middle: Point,
-    /// Dots per unit length.
-    scale: f64,
-    size: [f64; 2],
-    /// Length shown by the shorter side of the canvas.
-    extent: f64,
-    /// Magnification of displacements.
-    magnified: f64,
-    projection: Projection,
-}
-
-impl Window {
-    /// Zooming keeps `towards` (the selected node) visible; the whole shape is centred.
-    pub fn new(canvas: &Canvas, bounds: &Bounds, camera: &Camera, towards: Option<Point>) -> Self {
-        let size = canvas.size();
-        let [width, height] = bounds.size().map(|side| side.max(1e-300));
-        let whole = (size[0] / width).min(size[1] / height) * 0.94;
-        let scale = whole * camera.zoom;
-        let middle = [0, 1].map(|axis| {
-            let middle = 0.5 * (bounds.low[axis] + bounds.high[axis]);
-            let towards = towards.map_or(middle, |place| place[axis]);
-            let part = (1.0 - 1.0 / camera.zoom).max(0.0);
-            middle + part * (towards - middle) + camera.pan[axis] * size[axis] / whole
-        });
-        Window {
-            middle,
-            scale,
-            size,
-            extent: size[0].min(size[1]) / scale,
-            magnified: 1.0,
-            projection: camera.projection,
-        }
-    }
-
-    /// Position of a node in the picture.
-    fn place(&self, view: &View, node: usize) -> Point {
-        view.magnified(node, (self.magnified, self.projection))
-    }
-
-    /// Whether something at `place`, `size` dots large, can be visible.
-    fn sees(&self, place: Point, size: f64) -> bool {
-        let dot = self.dot(place);
-        (0..2).all(|axis| dot[axis] > -size && dot[axis] < self.size[axis] + size)
-    }
-
-    /// The dot at a point of the sheet.
-    pub fn dot(&self, point: Point) -> Dot {
-        let x = 0.5 * self.size[0] + (point[0] - self.middle[0]) * self.scale;
-        let y = 0.5 * self.size[1] - (point[1] - self.middle[1]) * self.scale;
-        [x, y]
-    }
 }
 
 /// Draws the curve of an element. Where its nodes are close, straight lines between them set the same dots.
@@ -630,19 +575,7 @@ fn caption(buffer: &mut Buffer, inner: Rect, shown: Scales, moves: bool, app: &A
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn scale_is_equal_in_both_directions_and_y_points_up() {
-        let canvas = Canvas::new(Rect::new(0, 0, 50, 10));
-        let bounds = Bounds {
-            low: [0.0, 0.0],
-            high: [1.0, 1.0],
-        };
-        let window = Window::new(&canvas, &bounds, &Camera::ALL, None);
-        let [a, b, c] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(|p| window.dot(p));
-        assert!((b[0] - a[0] - (a[1] - c[1])).abs() < 1e-9);
-        assert!(c[1] < a[1]);
-    }
+    use stickslip_debugger::explain::outline::Projection;
 
     #[test]
     fn the_normal_is_on_the_right_of_the_node_order() {

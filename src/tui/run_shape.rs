@@ -1,10 +1,10 @@
 //! The contact surfaces of a finished run of another program, from the chosen side, with its contacts: C closed, · open.
 
-use super::shape::Window;
 use crate::app::App;
 use crate::canvas::Canvas;
 use crate::paint;
 use crate::view::View;
+use crate::window::Window;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Modifier;
