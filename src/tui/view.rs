@@ -195,6 +195,14 @@ impl<'a> View<'a> {
         })
     }
 
+    /// The largest undeformed diagonal of an element (length).
+    pub fn largest_element(&self) -> f64 {
+        self.tree.map_or_else(
+            || outline::largest_element(self.model),
+            Tree::largest_element,
+        )
+    }
+
     /// The supports of the scene.
     pub fn supports(&self) -> Cow<'a, [Support]> {
         match self.tree {

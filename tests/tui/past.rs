@@ -194,9 +194,12 @@ fn the_cure_of_the_diagnosis_is_copied_as_lines_of_the_deck() {
 #[test]
 fn the_shape_shows_the_surfaces_of_the_deck_from_the_chosen_side() {
     let mut debugger = debugger("causes/stiff");
+    while debugger.app.panes.focus != Pane::Shape {
+        debugger.type_keys("Tab");
+    }
     let mut sides = Vec::new();
     for side in ["oblique", "top", "side"] {
-        let shown = debugger.text(120, 40);
+        let shown = debugger.text(80, 24);
         assert!(
             shown.contains(&format!("{side} view (V)   faint: master")),
             "{shown}"

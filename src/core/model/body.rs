@@ -96,8 +96,6 @@ pub struct Solid {
     pub edges: Vec<Vec<usize>>,
     /// The faces between different materials ([`seams`](super::mesh::seams)).
     pub seams: Vec<Vec<usize>>,
-    /// The largest undeformed diagonal of an element (length).
-    pub largest: f64,
 }
 
 /// An element of a continuum.

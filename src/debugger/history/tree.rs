@@ -12,7 +12,7 @@
 //! whole. [`Budget::branches`] limits those frames and the strips; beyond it no new branch can start.
 
 use crate::explain::conditions::{self, Support};
-use crate::explain::round_off;
+use crate::explain::{outline, round_off};
 use crate::history::frame::Frame;
 use crate::history::strip::{PointKind, Strip};
 use std::collections::HashMap;
@@ -94,6 +94,7 @@ pub struct Tree {
     /// What screens need of the model in each frame, and take from all of its nodes.
     reach: f64,
     supports: Vec<Support>,
+    largest_element: f64,
     line: Points,
     branches: Vec<Branch>,
     current: usize,
@@ -130,6 +131,7 @@ impl Tree {
         Tree {
             reach: round_off::reach(&model),
             supports: conditions::supports(&model),
+            largest_element: outline::largest_element(&model),
             model,
             line: Points {
                 frames: vec![frame],
@@ -162,6 +164,11 @@ impl Tree {
     /// The supports of the scene.
     pub fn supports(&self) -> &[Support] {
         &self.supports
+    }
+
+    /// The largest diagonal of an element ([`outline::largest_element`]).
+    pub fn largest_element(&self) -> f64 {
+        self.largest_element
     }
 
     /// Frames from the root to the tip of the current branch.

@@ -291,7 +291,6 @@ fn solid(
         material_names: vec![of.clone()],
         edges,
         seams: Vec::new(),
-        largest: 0.0,
         elements: elements.collect(),
     };
     for (k, region) in regions.iter().enumerate() {
@@ -304,11 +303,6 @@ fn solid(
         )?;
     }
     made.seams = seams(&made.elements);
-    let diagonals = made.elements.iter().map(|element| {
-        let [from, to] = element.diagonal().map(|node| names.nodes[node].at);
-        (to[0] - from[0]).hypot(to[1] - from[1])
-    });
-    made.largest = diagonals.fold(0.0, f64::max);
     Ok(made)
 }
 

@@ -206,7 +206,7 @@ fn inside(canvas: &mut Canvas, window: &Window, solid: &Solid, app: &App, view: 
         let now: Vec<Point> = face.iter().map(|&node| window.place(view, node)).collect();
         draw_curve(canvas, window, &now, style);
     };
-    let has_room = GROWN * solid.largest * window.scale >= ELEMENT;
+    let has_room = GROWN * view.largest_element() * window.scale >= ELEMENT;
     for element in solid.elements.iter().filter(|_| has_room) {
         let [a, b] = element.diagonal().map(|node| window.place(view, node));
         let size = (a[0] - b[0]).hypot(a[1] - b[1]) * window.scale;
