@@ -616,7 +616,7 @@ fn an_interrupt_is_a_message_then_a_signal_then_the_end() {
         does(&mut session, minor());
         session.submit(minor()).unwrap();
         for _ in 0..times {
-            std::thread::sleep(Duration::from_millis(500));
+            std::thread::sleep(Duration::from_millis(150));
             session.interrupt();
         }
         let said = session.wait().unwrap().0;
