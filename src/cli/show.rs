@@ -5,14 +5,13 @@ use std::path::PathBuf;
 use stickslip_debugger::recorded::recording::Recording;
 use stickslip_debugger::teach;
 use stickslip_scene::builtin;
+use stickslip_scene::embedded;
+use stickslip_scene::embedded::EmbeddedFile;
 use stickslip_scene::format::error::did_you_mean;
 use stickslip_study::{benchmarks, builtin as studies, chart_file};
 
 /// The deck that page `past-runs` runs in CalculiX.
-const DECK: (&str, &str) = (
-    "stiff.inp",
-    include_str!("../../tests/calculix/causes/stiff.inp"),
-);
+static DECK: EmbeddedFile = embedded!("stiff.inp", "tests/calculix/causes/stiff.inp");
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -54,7 +53,7 @@ fn find(name: &str, chart: bool) -> Result<&'static str, String> {
             .or_else(|| studies::find(name).map(|file| file.text))
             .or_else(|| (name == benchmarks::BUILTIN).then(benchmarks::builtin_text))
             .or_else(|| teach::find(name).map(|file| file.text))
-            .or_else(|| (name == DECK.0).then_some(DECK.1)),
+            .or_else(|| (name == DECK.name).then_some(DECK.text)),
     };
     found.ok_or_else(|| {
         let scenes = builtin::list().iter().map(|scene| scene.name);

@@ -22,8 +22,8 @@ pub enum Face {
     /// DejaVu Sans.
     #[default]
     Sans,
-    /// [`pen::mono`](crate::pen::mono), with the glyphs of DejaVu Sans where it has none. Whoever draws with it passes its bytes,
-    /// so that a program that does not, such as the page, does not contain them.
+    /// A monospace font ([`pen::mono`](crate::pen::mono)) by the bytes of its file; DejaVu Sans for glyphs that it lacks. Passing
+    /// the bytes keeps this font out of programs that do not draw with it, such as the page.
     Mono(&'static [u8]),
 }
 

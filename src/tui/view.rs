@@ -9,12 +9,12 @@ use stickslip_core::step::event::{Event, Outcome, Position};
 use stickslip_core::step::intervene::Intervention;
 use stickslip_core::step::solver::Capabilities;
 use stickslip_debugger::action::Context;
-use stickslip_debugger::explain::conditions::{self, Support};
 use stickslip_debugger::explain::influence::NodePush;
+use stickslip_debugger::explain::model_facts::ModelFacts;
 use stickslip_debugger::explain::outline::{self, Projection};
 use stickslip_debugger::explain::page::DiagnosisPage;
 use stickslip_debugger::explain::remedies::RemedyTrial;
-use stickslip_debugger::explain::round_off::{self, RoundOff};
+use stickslip_debugger::explain::round_off::RoundOff;
 use stickslip_debugger::history::frame::Frame;
 use stickslip_debugger::history::strip::Strip;
 use stickslip_debugger::history::tree::Tree;
@@ -188,26 +188,15 @@ impl<'a> View<'a> {
     /// Which of the shown values are round-off; none at the start.
     pub fn round_off(&self) -> RoundOff {
         self.event().map_or(RoundOff::default(), |event| {
-            let reach = self
-                .tree
-                .map_or_else(|| round_off::reach(self.model), Tree::reach);
-            RoundOff::with_reach(reach, &event.before)
+            RoundOff::with_reach(self.facts().reach, &event.before)
         })
     }
 
-    /// The largest undeformed diagonal of an element (length).
-    pub fn largest_element(&self) -> f64 {
-        self.tree.map_or_else(
-            || outline::largest_element(self.model),
-            Tree::largest_element,
-        )
-    }
-
-    /// The supports of the scene.
-    pub fn supports(&self) -> Cow<'a, [Support]> {
+    /// The facts about the model.
+    pub fn facts(&self) -> Cow<'a, ModelFacts> {
         match self.tree {
-            Some(tree) => Cow::Borrowed(tree.supports()),
-            None => Cow::Owned(conditions::supports(self.model)),
+            Some(tree) => Cow::Borrowed(tree.facts()),
+            None => Cow::Owned(ModelFacts::new(self.model)),
         }
     }
 

@@ -10,7 +10,7 @@ use crate::model::{Component, Mode};
 use crate::plane::minus;
 use nalgebra::{DMatrix, RowVector3};
 use serde::{Deserialize, Serialize};
-use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// Condition values and amplitudes below this count as zero; both are of order one.
 const ZERO: f64 = 1e-9;
@@ -258,8 +258,9 @@ fn null_space(conditions: Vec<Row>, bodies: usize) -> Vec<Vec<f64>> {
         }
     }
     let columns = 3 * bodies;
-    let is_pivot: HashSet<usize> = pivots.iter().map(|(pivot, _)| *pivot).collect();
-    let free = (0..columns).filter(|column| !is_pivot.contains(column));
+    let mut is_free = vec![true; columns];
+    pivots.iter().for_each(|(pivot, _)| is_free[*pivot] = false);
+    let free = (0..columns).filter(|column| is_free[*column]);
     let mut basis: Vec<Vec<f64>> = free
         .map(|column| {
             let mut v = vec![0.0; columns];

@@ -94,8 +94,6 @@ pub struct Solid {
     pub material_names: Vec<String>,
     /// The boundary faces ([`boundary`](super::mesh::boundary)).
     pub edges: Vec<Vec<usize>>,
-    /// The faces between different materials ([`seams`](super::mesh::seams)).
-    pub seams: Vec<Vec<usize>>,
 }
 
 /// An element of a continuum.
@@ -107,14 +105,6 @@ pub struct SolidElement {
     pub nodes: Vec<usize>,
     /// Index into [`Solid::materials`].
     pub material: usize,
-}
-
-impl SolidElement {
-    /// Two opposite corners, or a corner and a node of the side opposite it.
-    pub fn diagonal(&self) -> [usize; 2] {
-        let across = self.kind.faces().len() / 2;
-        [self.nodes[0], self.nodes[across]]
-    }
 }
 
 /// Parameters of an elastic continuum.

@@ -1,6 +1,5 @@
 //! Boundary of a mesh of continuum elements.
 
-use super::SolidElement;
 use crate::elements::kinds::ElementKind;
 use std::collections::HashMap;
 
@@ -27,24 +26,6 @@ pub fn boundary<'a>(
             .map(|(nodes, face)| face.iter().map(|&place| nodes[place]).collect())
             .collect(),
     )
-}
-
-/// The faces between elements of different materials.
-pub fn seams(elements: &[SolidElement]) -> Vec<Vec<usize>> {
-    let mut across = HashMap::new();
-    let mut seams = Vec::new();
-    for element in elements {
-        for face in element.kind.faces_of(&element.nodes) {
-            // Neighbours walk the face that they share in opposite directions.
-            let mut ends = [face.first().copied(), face.last().copied()];
-            ends.sort_unstable();
-            match across.insert(ends, element.material) {
-                Some(other) if other != element.material => seams.push(face),
-                _ => {}
-            }
-        }
-    }
-    seams
 }
 
 /// Sorts faces into walks; where a walk closes or ends, the first remaining face starts the next one.
@@ -109,23 +90,6 @@ mod tests {
             [6, 7, 0],
         ];
         assert_eq!(boundary, expected);
-    }
-
-    #[test]
-    fn seams_lie_between_materials_only() {
-        // 1--3--5--7  three quadrilaterals, the last of another material
-        // 0--2--4--6
-        let element = |nodes: [usize; 4], material| SolidElement {
-            kind: ElementKind::Quad4,
-            nodes: nodes.to_vec(),
-            material,
-        };
-        let elements = [
-            element([0, 2, 3, 1], 0),
-            element([2, 4, 5, 3], 0),
-            element([4, 6, 7, 5], 1),
-        ];
-        assert_eq!(seams(&elements), [[5, 4]]);
     }
 
     #[test]

@@ -30,7 +30,7 @@ pub use control::{ArcLength, ArcMeasure, Bound, Control};
 pub use dofs::{Axis, Component, Dofs};
 pub use friction::{Friction, InitialState, Mode};
 pub use load::{Factor, Jumps, Load, Prescribed, PressedFace, Pressure, least, on_leg};
-pub use mesh::{boundary, seams};
+pub use mesh::boundary;
 pub use settings::{
     AtCycle, AtLimit, BoundUpdate, Geometry, InitialGaps, LinearSolver, PointForce, Refactor,
     ResidualMethod, SearchMode, Settings, SlipCount, Sticking, Strategy, TieRule, Touch,

@@ -44,6 +44,7 @@ pub mod limit_load;
 pub mod load_limit_probe;
 pub mod majors;
 pub mod mesh_probe;
+pub mod model_facts;
 pub mod names;
 pub mod outline;
 pub mod page;

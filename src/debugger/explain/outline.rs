@@ -256,20 +256,6 @@ const TO_SCALE: f64 = 0.015;
 /// Largest automatic magnification.
 const MOST: f64 = 1e6;
 
-/// The largest undeformed diagonal of an element of a solid (length); 0 without solids.
-pub fn largest_element(model: &Model) -> f64 {
-    let solids = model.bodies.iter().filter_map(|body| match &body.kind {
-        BodyKind::Solid(solid) => Some(solid),
-        _ => None,
-    });
-    let diagonals = solids.flat_map(|solid| &solid.elements).map(|element| {
-        let [from, to] = element.diagonal().map(|node| model.nodes[node].at);
-        let [x, y] = minus(to, from);
-        x.hypot(y)
-    });
-    diagonals.fold(0.0, f64::max)
-}
-
 /// A round magnification that makes the largest of the outlines' displacements visible; 1 if it is visible to scale, or too small to
 /// be made visible.
 pub fn magnification<'a>(model: &Model, displacements: impl Iterator<Item = &'a [f64]>) -> f64 {

@@ -11,8 +11,7 @@
 //! whole frame before it when needed. The root, the frame at the cursor and the tips of all branches are always
 //! whole. [`Budget::branches`] limits those frames and the strips; beyond it no new branch can start.
 
-use crate::explain::conditions::{self, Support};
-use crate::explain::{outline, round_off};
+use crate::explain::model_facts::ModelFacts;
 use crate::history::frame::Frame;
 use crate::history::strip::{PointKind, Strip};
 use std::collections::HashMap;
@@ -91,10 +90,7 @@ pub struct Branch {
 #[derive(Debug)]
 pub struct Tree {
     model: Arc<Model>,
-    /// What screens need of the model in each frame, and take from all of its nodes.
-    reach: f64,
-    supports: Vec<Support>,
-    largest_element: f64,
+    facts: ModelFacts,
     line: Points,
     branches: Vec<Branch>,
     current: usize,
@@ -129,9 +125,7 @@ impl Tree {
         let mut ledger = Ledger::default();
         ledger.add(&frame);
         Tree {
-            reach: round_off::reach(&model),
-            supports: conditions::supports(&model),
-            largest_element: outline::largest_element(&model),
+            facts: ModelFacts::new(&model),
             model,
             line: Points {
                 frames: vec![frame],
@@ -156,19 +150,9 @@ impl Tree {
         &self.model
     }
 
-    /// The largest length of the scene ([`round_off::reach`]).
-    pub fn reach(&self) -> f64 {
-        self.reach
-    }
-
-    /// The supports of the scene.
-    pub fn supports(&self) -> &[Support] {
-        &self.supports
-    }
-
-    /// The largest diagonal of an element ([`outline::largest_element`]).
-    pub fn largest_element(&self) -> f64 {
-        self.largest_element
+    /// The facts about the scene's model.
+    pub fn facts(&self) -> &ModelFacts {
+        &self.facts
     }
 
     /// Frames from the root to the tip of the current branch.

@@ -9,9 +9,7 @@ use super::linear;
 use crate::format::error::{AtPath, Fault, Path, at, bail, fault, none_called};
 use crate::format::spec::{BodySpec, Material, Point, Region, Spec};
 use std::collections::HashSet;
-use stickslip_core::model::{
-    Beam, Body, BodyKind, Elastic, Node, Solid, SolidElement, boundary, seams,
-};
+use stickslip_core::model::{Beam, Body, BodyKind, Elastic, Node, Solid, SolidElement, boundary};
 use stickslip_core::model::{Law, Plane, Update};
 
 /// Rejects materials with invalid stiffnesses.
@@ -290,7 +288,6 @@ fn solid(
         materials: vec![continuum(&here.then("material"), spec, of)?],
         material_names: vec![of.clone()],
         edges,
-        seams: Vec::new(),
         elements: elements.collect(),
     };
     for (k, region) in regions.iter().enumerate() {
@@ -302,7 +299,6 @@ fn solid(
             &mut made,
         )?;
     }
-    made.seams = seams(&made.elements);
     Ok(made)
 }
 

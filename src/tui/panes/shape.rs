@@ -22,9 +22,10 @@ use std::f64::consts::FRAC_PI_4;
 use stickslip_core::contact::element::SurfaceElement;
 use stickslip_core::fem::deformation::PointDeformation;
 use stickslip_core::fem::lagrange;
-use stickslip_core::model::{BodyKind, Contact, Model, Solid};
+use stickslip_core::model::{BodyKind, Contact, Model};
 use stickslip_debugger::explain::conditions::{ConditionArrow, Conditions, Given, conditions};
 use stickslip_debugger::explain::examination::Examination;
+use stickslip_debugger::explain::model_facts::{self, solid_elements};
 use stickslip_debugger::explain::names;
 use stickslip_debugger::explain::outline::{self, Point, bounds, curve, outer_nodes};
 use stickslip_debugger::explain::strain;
@@ -186,11 +187,7 @@ fn bodies(canvas: &mut Canvas, window: &Window, app: &App, view: &View) {
             .collect();
         draw_curve(canvas, window, &reference, app.theme.faint);
     }
-    for body in &view.model.bodies {
-        if let BodyKind::Solid(solid) = &body.kind {
-            inside(canvas, window, solid, app, view);
-        }
-    }
+    inside(canvas, window, app, view);
     for element in elements() {
         let now: Vec<Point> = element
             .iter()
@@ -200,23 +197,25 @@ fn bodies(canvas: &mut Canvas, window: &Window, app: &App, view: &View) {
     }
 }
 
-/// Lines between the elements of a solid if there is room, and between its materials.
-fn inside(canvas: &mut Canvas, window: &Window, solid: &Solid, app: &App, view: &View) {
+/// Lines between the elements of solids if there is room, and between their materials.
+fn inside(canvas: &mut Canvas, window: &Window, app: &App, view: &View) {
     let draw = |canvas: &mut Canvas, face: &[usize], style| {
         let now: Vec<Point> = face.iter().map(|&node| window.place(view, node)).collect();
         draw_curve(canvas, window, &now, style);
     };
-    let has_room = GROWN * view.largest_element() * window.scale >= ELEMENT;
-    for element in solid.elements.iter().filter(|_| has_room) {
-        let [a, b] = element.diagonal().map(|node| window.place(view, node));
-        let size = (a[0] - b[0]).hypot(a[1] - b[1]) * window.scale;
-        if size >= ELEMENT && window.sees(a, size) {
-            for face in element.kind.faces_of(&element.nodes) {
-                draw(canvas, &face, app.theme.faint);
+    let facts = view.facts();
+    if GROWN * facts.largest_element * window.scale >= ELEMENT {
+        for element in view.model.bodies.iter().flat_map(solid_elements) {
+            let [a, b] = model_facts::diagonal(element).map(|node| window.place(view, node));
+            let size = (a[0] - b[0]).hypot(a[1] - b[1]) * window.scale;
+            if size >= ELEMENT && window.sees(a, size) {
+                for face in element.kind.faces_of(&element.nodes) {
+                    draw(canvas, &face, app.theme.faint);
+                }
             }
         }
     }
-    for face in &solid.seams {
+    for face in &facts.seams {
         draw(canvas, face, app.theme.text);
     }
 }
@@ -389,8 +388,8 @@ fn supports(
     app: &App,
     view: &View,
 ) {
-    let shown = view.supports();
-    let supports = shown.iter().map(|&(node, held)| {
+    let facts = view.facts();
+    let supports = facts.supports.iter().map(|&(node, held)| {
         let glyph = match held {
             [true, true, true] => "■",
             [true, true, false] => "▲",

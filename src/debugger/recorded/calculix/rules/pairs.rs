@@ -462,7 +462,7 @@ fn remaining(
         .map(|&node| format!("{},", shape.deck.nodes[node].label))
         .collect();
     match rest.is_empty() {
-        true => format!("** {name} has no pair of its own"),
+        true => format!("** {name} is in no pair"),
         false => format!("*SURFACE, NAME={name}, TYPE=NODE\n{}", rest.join("\n")),
     }
 }

@@ -2,8 +2,8 @@
 
 use super::shape::{DeckShape, PairShape, SlaveGap, Vector};
 use nalgebra::{SMatrix, SVector};
-use std::collections::hash_map::Entry;
-use std::collections::{BTreeSet, HashMap};
+use std::collections::btree_map::Entry;
+use std::collections::{BTreeMap, BTreeSet};
 use stickslip_core::model::RunFinding;
 use stickslip_exchange::inp::deck::{Direction, Step, Value, Volume};
 use stickslip_scene::number::sig4;
@@ -17,7 +17,7 @@ const FREE: f64 = 1e-9;
 const LOADED: f64 = 1e-6;
 /// Cosine between normals of a contact that counts as flat.
 const FLAT: f64 = 0.99;
-/// Distance beyond the edge of a contact at which loads tip a body over, in sizes of a slave face. CalculiX' contact also pulls a bit.
+/// Distance beyond the edge of a contact at which loads tip a body over, in sizes of a slave face. Contact in CalculiX also pulls slightly.
 const EDGE: f64 = 0.1;
 /// Directions in which the edge of a contact is looked for.
 const DIRECTIONS: usize = 72;
@@ -443,7 +443,7 @@ impl Resting<'_> {
                 if free.is_empty() || pairs_of(shape, group).count() != 1 {
                     continue;
                 }
-                let mut total = HashMap::new();
+                let mut total = BTreeMap::new();
                 let steps = shape.reached();
                 // Later displacements drive the body.
                 let driven = |step: &Step| {
@@ -580,12 +580,12 @@ fn add_forces(
     shape: &DeckShape,
     group: usize,
     (number, step): (usize, &Step),
-    total: &mut HashMap<[usize; 3], Force>,
+    total: &mut BTreeMap<[usize; 3], Force>,
 ) {
     if step.new_forces {
         total.clear();
     }
-    let mut here: HashMap<[usize; 3], Force> = HashMap::new();
+    let mut here: BTreeMap<[usize; 3], Force> = BTreeMap::new();
     for force in forces(shape, number) {
         if shape.group(force.nodes[0]) == Some(group) {
             match here.entry(force.of) {
