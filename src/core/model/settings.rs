@@ -33,7 +33,8 @@ documented! {
         pub touch: Touch,
         /// How ties in Table 2 are resolved. Default: keep.
         pub ties: TieRule,
-        /// Maximum number of minor iterations per major iteration. Default: 100.
+        /// Maximum number of minor iterations per major iteration; on the ladder, after its first strategy, at least two per contact.
+        /// Default: 100.
         pub minors: u32,
         /// Maximum number of major iterations per increment. Default: 60.
         pub majors: u32,
