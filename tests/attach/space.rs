@@ -132,6 +132,8 @@ fn a_state_with_friction_across_its_slip_is_marked() {
             let page = session.background().examination(session.timeline().place());
             let page = page.flatten().unwrap().lines().join("\n");
             assert_eq!(page.contains("degrees off"), marked, "{page}");
+            // Changes before an increment was accepted are over.
+            assert!(!page.contains("changed in the last") || marked, "{page}");
         }
     }
 }
