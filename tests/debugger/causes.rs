@@ -163,6 +163,7 @@ fn bodies_that_stay_on_their_contact_have_no_finding() {
     assert_eq!(found("slide", both, "TOP, 3, 0."), [""; 0]);
     let spin = "*DLOAD\nSLIDER, CENTRIF, 1., 0., 0., 0., 0., 0., 1.\n*CLOAD";
     assert_eq!(found("pull", "*CLOAD", spin), [""; 0]);
+    assert_eq!(found("pull", "=LINEAR", "=TIED"), [""; 0]);
     // New point loads leave pressures.
     let pressed = text("friction").replace("*CLOAD\nTOP, 3, -50.", "*DLOAD\nSLIDER, P2, 125.");
     let pushed = pressed.replace("*CLOAD", "*CLOAD, OP=NEW");
