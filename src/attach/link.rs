@@ -335,6 +335,7 @@ impl Link {
                 Some((_, column)) if letters.starts_with('{') => {
                     format!("column {column}: {broken}")
                 }
+                None if letters.starts_with('{') => broken.to_string(),
                 _ => "not a JSON object".to_owned(),
             };
             // In a long line the error is near the column.

@@ -375,6 +375,14 @@ impl<'a> Run<'a> {
             );
             return self.with_message(RunResult::new(Exit::Unconverged, "incomplete"), text);
         }
+        if self.tally.violated > 0 {
+            let text = format!(
+                "{} of {} violate a law of contact; `stickslip audit` lists them",
+                self.tally.violated,
+                counted(self.tally.accepted, "accepted increment")
+            );
+            return self.with_message(RunResult::new(Exit::Unconverged, "finished"), text);
+        }
         let exit = match model.jumps {
             Jumps::Cut | Jumps::Stop | Jumps::Dynamic if !self.tally.losses.is_empty() => {
                 Exit::Unconverged

@@ -88,6 +88,8 @@ pub struct Tally<'a> {
     pub majors: u64,
     /// Increments accepted with a warning.
     doubtful: u32,
+    /// Accepted increments of an attached solver that violate a law.
+    pub violated: u64,
     /// Load factors of increments that were accepted with a fallback.
     pub found: BTreeMap<Fallback, Vec<f64>>,
     /// Load factors of accepted increments that jumped, and of those that lost stability.
@@ -128,6 +130,7 @@ impl<'a> Tally<'a> {
             accepted: 0,
             majors: 0,
             doubtful: 0,
+            violated: 0,
             found: BTreeMap::new(),
             jumps: Vec::new(),
             losses: Vec::new(),
@@ -307,11 +310,13 @@ impl<'a> Tally<'a> {
             jumped,
             unstable,
             found,
+            ref marked,
             ..
         } = event.outcome
         else {
             return;
         };
+        self.violated += u64::from(self.most.is_some() && marked.is_some());
         if let Some(by) = found {
             self.found.entry(by).or_default().push(event.load_factor);
         }

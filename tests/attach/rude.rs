@@ -432,6 +432,7 @@ impl Rude {
             "type-twice" => {
                 self.replaced("\"type\":\"state\"", "\"type\":\"state\",\"type\":\"ok\"")
             }
+            "level" => instead(r#"{"type":"message","level":"panic","text":""}"#),
             "unknown-type" => instead("{\"type\":\"stat\\u001b[2J\"}"),
             "no-type" => instead("{\"kind\":\"state\"}"),
             "ok" => instead("{\"type\":\"ok\"}"),

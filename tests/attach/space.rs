@@ -25,7 +25,7 @@ pub fn tests() -> Vec<Trial> {
             the_swing_of_the_direction_of_friction_is_found_and_is_the_cause,
             a_state_with_friction_across_its_slip_is_marked,
             a_solver_in_space_passes_every_check,
-            a_check_finds_friction_off_the_slip,
+            a_check_and_a_run_find_friction_off_the_slip,
             a_stored_exchange_in_space_has_the_same_states,
             the_mesh_of_a_scene_may_be_a_file,
             remedies_are_tried_on_the_solver_itself,
@@ -132,6 +132,8 @@ fn a_state_with_friction_across_its_slip_is_marked() {
             let page = session.background().examination(session.timeline().place());
             let page = page.flatten().unwrap().lines().join("\n");
             assert_eq!(page.contains("degrees off"), marked, "{page}");
+            // Changes before an increment was accepted are over.
+            assert!(!page.contains("changed in the last") || marked, "{page}");
         }
     }
 }
@@ -147,9 +149,16 @@ fn a_solver_in_space_passes_every_check() {
     );
 }
 
-fn a_check_finds_friction_off_the_slip() {
+fn a_check_and_a_run_find_friction_off_the_slip() {
     let folder = tempfile::tempdir().unwrap();
-    let report = check(&start(folder.path(), &["1", "wrong"]), &Log::default());
+    let start = start(folder.path(), &["1", "wrong"]);
+    let mut arguments = vec!["run", "-q", "--"];
+    arguments.extend(start.command.iter().map(String::as_str));
+    let output = program(folder.path(), &arguments).output().unwrap();
+    assert_eq!(code(&output), 3);
+    let last = "2 of 3 accepted increments violate a law of contact";
+    assert!(err(&output).contains(last), "{}", err(&output));
+    let report = check(&start, &Log::default());
     let laws = report.checks.iter().find(|check| check.what == "laws");
     let text = report.text();
     let failed = matches!(laws.unwrap().verdict, Verdict::Fails(_));

@@ -158,6 +158,15 @@ fn bodies_that_stay_on_their_contact_have_no_finding() {
     assert_eq!(found("tip", "TOP, 1, 40.", "TOP, 1, 30.5"), [""; 0]);
     assert_eq!(found("tip", "TOP, 1, 40.", "TOP, 1, 38."), ["tipping over"]);
     assert_eq!(found("pull", "TOP, 3, 20.", "TOP, 3, -20."), [""; 0]);
+    // Without loads, or with loads that are not read.
+    let both = "TOP, 3, -50.\nTOP, 1, 5.";
+    assert_eq!(found("slide", both, "TOP, 3, 0."), [""; 0]);
+    let spin = "*DLOAD\nSLIDER, CENTRIF, 1., 0., 0., 0., 0., 0., 1.\n*CLOAD";
+    assert_eq!(found("pull", "*CLOAD", spin), [""; 0]);
+    // New point loads leave pressures.
+    let pressed = text("friction").replace("*CLOAD\nTOP, 3, -50.", "*DLOAD\nSLIDER, P2, 125.");
+    let pushed = pressed.replace("*CLOAD", "*CLOAD, OP=NEW");
+    assert_eq!(causes(&pushed), ["load above friction"]);
     let turned = "*TRANSFORM, NSET=FOOT, TYPE=C\n0., 0., 0., 0., 0., 1.\n*MATERIAL";
     assert_eq!(found("supported", "*MATERIAL", turned), [""; 0]);
 }
@@ -243,7 +252,8 @@ fn faces_of_all_kinds_of_solids_are_read() {
     }
 }
 
-/// The deck of two such elements, the second half a unit above the first, which is mirrored if its face S1 is the master.
+/// The deck of two such elements, the second half a unit above the first, which is mirrored if its face S1 is the master. Midside
+/// nodes bend both upwards.
 fn stacked(kind: &str, corners: &[[f64; 3]], low: &str, high: &str) -> String {
     let of_kind = match corners.len() {
         8 => CellKind::Hexa8,
@@ -265,7 +275,8 @@ fn stacked(kind: &str, corners: &[[f64; 3]], low: &str, high: &str) -> String {
         let at: Vec<[f64; 3]> = corners.iter().map(|at| place(body, *at)).collect();
         let middles = wanted
             .iter()
-            .map(|[a, b]| [0, 1, 2].map(|k| (at[*a][k] + at[*b][k]) / 2.0));
+            .map(|[a, b]| [0, 1, 2].map(|k| (at[*a][k] + at[*b][k]) / 2.0))
+            .map(|[x, y, z]| [x, y, z + 0.2 * x * (1.0 - x)]);
         for (k, [x, y, z]) in at.iter().copied().chain(middles).enumerate() {
             nodes += &format!("{}, {x}, {y}, {z}\n", body * count + k + 1);
         }

@@ -128,6 +128,21 @@ fn constant_pressure_and_tension_pass_through_a_tied_pair() {
     }
 }
 
+/// Pairs that share a node of their slave surfaces, and a fixed slave node over a fixed master, keep all sides.
+#[test]
+fn sides_with_shared_or_fixed_nodes_are_integrated() {
+    let whole = deck("CPE4", "SURFACE TO SURFACE", "LINEAR", 100.0);
+    let two = "*SURFACE, NAME=LEFT\n101, S1\n102, S1\n*SURFACE, NAME=RIGHT\n103, S1\n";
+    let shared = whole.replace("*SURFACE, NAME=UPPER\nE101, S1\n", two);
+    let shared = shared.replace("UPPER, LOWER", "LEFT, LOWER\nRIGHT, LOWER");
+    assert!(error(&shared, 100.0) < 1e-10);
+    let fixed: String = (1..=10).map(|node| format!("{node}, 1, 2\n")).collect();
+    let fixed = whole.replace("*STEP", &format!("{fixed}101, 1, 2\n*STEP"));
+    let scene = Scene::from_text("job.inp", &fixed, &[]).unwrap_or_else(|error| panic!("{error}"));
+    let areas = scene.model.contacts.iter().filter_map(|point| point.area);
+    assert!((areas.sum::<f64>() - WIDTH).abs() < 1e-12);
+}
+
 #[test]
 fn hard_contact_of_faces_is_solved_at_nodes_with_a_warning() {
     let text =

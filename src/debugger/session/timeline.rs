@@ -22,7 +22,7 @@ use crate::record::snapshot::AppliedIntervention;
 use std::sync::Arc;
 use stickslip_core::linear::norms::Norms;
 use stickslip_core::model::Model;
-use stickslip_core::step::event::{Event, Position};
+use stickslip_core::step::event::{Event, Outcome, Position};
 use stickslip_core::step::intervene::Intervention;
 use stickslip_core::step::state::{State, Status};
 use stickslip_scene::number::shortest;
@@ -405,7 +405,10 @@ impl Timeline {
             Status::Failed(failure) => Some(failures::describe(self.model(), failure)),
             _ => doubt,
         };
-        let found = rounds(&self.strips()[..=self.cursor]);
+        // Changes before an increment was accepted are over.
+        let accepted = |event: &Arc<Event>| matches!(event.outcome, Outcome::Increment { .. });
+        let is_over = what.is_none() && frame.event.as_ref().is_some_and(accepted);
+        let found = rounds(&self.strips()[..=self.cursor]).filter(|_| !is_over);
         let place = found.map(|found| rounds::words(self.model(), &found, true));
         Reported {
             changing: place.is_some(),

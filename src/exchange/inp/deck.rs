@@ -43,7 +43,7 @@ pub struct Deck {
     pub printed: Vec<usize>,
     /// Warnings about ignored or reinterpreted input, in deck order, each once.
     pub remarks: Vec<Remark>,
-    /// Whether cards that may support or couple nodes were skipped; only in outlines.
+    /// Whether cards that may support, load or couple nodes were skipped; only in outlines.
     pub is_incomplete: bool,
 }
 

@@ -90,6 +90,7 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
         ),
     ),
     ("BUCKLE", Refused(OTHER)),
+    ("CFLUX", Ignored(HEAT)),
     ("CHANGE FRICTION", Refused(CHANGES)),
     ("CHANGE SURFACE BEHAVIOR", Refused(CHANGES)),
     (
@@ -141,6 +142,7 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
         read("for GRAV in *DLOAD", Laws, &[], Reader::density),
     ),
     ("DEPVAR", Refused(INELASTIC)),
+    ("DFLUX", Ignored(HEAT)),
     ("DISTRIBUTING COUPLING", Refused(COUPLED)),
     ("DISTRIBUTION", Refused(FRAMES)),
     (
@@ -198,7 +200,7 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
             Reader::expansion,
         ),
     ),
-    ("FILM", Refused("only mechanical loads are supported")),
+    ("FILM", Ignored(HEAT)),
     ("FREQUENCY", Refused(OTHER)),
     (
         "FRICTION",
@@ -214,6 +216,7 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
         Refused("gap elements are not supported; use *CONTACT PAIR"),
     ),
     ("GAP CONDUCTANCE", Ignored(HEAT)),
+    ("GAP HEAT GENERATION", Ignored(HEAT)),
     ("HEADING", read("as the title", Mesh, ANY, Reader::heading)),
     ("HEAT TRANSFER", Refused(OTHER)),
     ("HYPERELASTIC", Refused(INELASTIC)),
@@ -287,7 +290,7 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
     ),
     ("PREPRINT", Ignored(OUTPUT)),
     ("PRINT", Ignored(OUTPUT)),
-    ("RADIATE", Refused("only mechanical loads are supported")),
+    ("RADIATE", Ignored(HEAT)),
     ("RESTART", Ignored("use run's --snapshot to save states")),
     (
         "RIGID BODY",
@@ -369,6 +372,7 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
         "SURFACE INTERACTION",
         read("", Laws, &["NAME"], Reader::interaction),
     ),
+    ("SYSTEM", Refused(FRAMES)),
     (
         "TEMPERATURE",
         read(
@@ -394,12 +398,15 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
     ("VISCO", Refused(OTHER)),
 ];
 
-/// Keywords, without spaces, that support or couple nodes: an outline without them is incomplete.
+/// Keywords, without spaces, that support, load or couple nodes: an outline without them is incomplete.
 pub(super) const COUPLING: &[&str] = &[
     "BOUNDARY",
+    "CLOAD",
     "COUPLING",
     "CYCLICSYMMETRYMODEL",
     "DISTRIBUTINGCOUPLING",
+    "DLOAD",
+    "DSLOAD",
     "ELEMENT",
     "EQUATION",
     "GAP",
@@ -410,6 +417,7 @@ pub(super) const COUPLING: &[&str] = &[
     "RIGIDBODY",
     "SPRING",
     "SUBMODEL",
+    "SYSTEM",
     "TIE",
     "TRANSFORM",
 ];

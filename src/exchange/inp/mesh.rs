@@ -455,7 +455,10 @@ fn kind_of(name: &str) -> Result<ElementType, String> {
         }
         _ => "is not supported",
     };
-    Err(format!("{} {why}; {RIGHT}", short(name)))
+    Err(format!(
+        "{} {why}; {RIGHT}; `stickslip check` also reads C3D4, 6, 8, 10, 15, 20 and their variants",
+        short(name)
+    ))
 }
 
 /// Rejects a set or a surface that is too large.

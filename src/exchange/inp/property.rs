@@ -195,9 +195,14 @@ impl Reader {
                     "LINEAR" => Normal::Linear { stiffness },
                     _ => Normal::Tied { stiffness },
                 };
-                let why = "the tension at large gaps and the clearance c0 are ignored: the pressure is K times the \
-                           overclosure, and 0 with a gap";
-                ignored = words.get(1).map(|more| (more.place(), why));
+                let given = "the tension at large gaps and the clearance c0 are ignored: the pressure is K times the \
+                             overclosure, and 0 with a gap";
+                let default = "LINEAR has no second value, the tension: in NODE TO SURFACE pairs CalculiX then pulls open \
+                               nodes with up to E / 70000, this program does not; the value 1e-9 removes it there";
+                ignored = match words.get(1) {
+                    Some(more) => Some((more.place(), given)),
+                    None => (law == "LINEAR").then_some((place, default)),
+                };
             }
             law => {
                 let why = "nonlinear pressure laws do not give a complementarity problem; it must be HARD, LINEAR or TIED";

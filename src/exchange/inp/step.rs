@@ -184,6 +184,10 @@ impl Reader {
                         place,
                         "directions 3, 4 and 5 are always fixed in plane problems",
                     ),
+                    11 => self.deck.add_note(
+                        place,
+                        "direction 11, the temperature, is ignored: heat flow is not computed",
+                    ),
                     3..=5 => bail!(
                         last,
                         "a displacement of {value:?} along direction {number} leaves the plane"

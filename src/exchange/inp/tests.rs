@@ -313,6 +313,25 @@ fn ignored_and_reinterpreted_input_is_listed_with_its_line() {
         found.contains("30: *CONDUCTIVITY is ignored: it concerns the flow of heat"),
         "{found}"
     );
+    let soft = but(BLOCK, "OVERCLOSURE=HARD", "OVERCLOSURE=LINEAR\n2e4");
+    let heated = but(
+        &soft,
+        "TOP, 1, 1, 0.\n",
+        "TOP, 1, 1, 0.\nTOP, 11, 11, 20.\n",
+    );
+    let found = lines(&deck(&but(
+        &heated,
+        "*END STEP",
+        "*CFLUX\nTOP, 11, 1.\n*END STEP",
+    )))
+    .join("\n");
+    for part in [
+        "36: LINEAR has no second value",
+        "direction 11, the temperature",
+        "*CFLUX is ignored",
+    ] {
+        assert!(found.contains(part), "{found}");
+    }
     let twice = but(
         BLOCK,
         "*BOUNDARY\nGROUND, 1, 2",

@@ -28,9 +28,9 @@ pub(super) fn spread(
     pairs: &mut Vec<usize>,
 ) -> Result<(), Fault> {
     let by_surface = |pair: usize| !spec.slaves[pair].by.is_node();
-    let mut pair_of = vec![None; names.nodes.len()];
+    let mut pairs_of = vec![Vec::new(); names.nodes.len()];
     for (slave, &pair) in slaves.iter().zip(&*pairs) {
-        pair_of[slave.node] = Some(pair).filter(|pair| by_surface(*pair));
+        pairs_of[slave.node].push(pair);
     }
     let places: Vec<[f64; 2]> = names.nodes.iter().map(|node| node.at).collect();
     let solids = bodies
@@ -48,7 +48,11 @@ pub(super) fn spread(
             pairs.push(pair);
             continue;
         }
-        let own = |side: &&AreaSide<'_>| side.nodes.iter().all(|&node| pair_of[node] == Some(pair));
+        let own = |side: &&AreaSide<'_>| {
+            side.nodes
+                .iter()
+                .all(|&node| pairs_of[node].contains(&pair))
+        };
         for side in sides.iter().filter(own) {
             let borders = borders(side, surfaces, &slave.surfaces, &places);
             let ends = [side.nodes[0], side.nodes[side.nodes.len() - 1]];

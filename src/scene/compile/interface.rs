@@ -166,7 +166,9 @@ pub(super) fn slaves(
                     state: group.state,
                     ..Contact::new(node, on.clone(), Friction::default())
                 };
-                let fresh = taken.insert(node);
+                // Sides of several pairs may share nodes.
+                let of_sides = (!group.by.is_node()).then_some(k);
+                let fresh = taken.insert((node, of_sides));
                 check_slave(&slave, fresh, names, surfaces, &members, length).map_err(fault)?;
                 made.push(slave);
                 pairs.push(k);

@@ -296,6 +296,7 @@ impl DeckObjects<'_> {
         surfaces: &BTreeMap<usize, Vec<String>>,
     ) -> Result<(), Fault> {
         let mut of_node: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        let mut groups: Vec<(Vec<usize>, Vec<usize>)> = Vec::new();
         for (k, touching) in all.iter().enumerate() {
             let rigid = self
                 .nodes_of(touching.master)
@@ -303,11 +304,25 @@ impl DeckObjects<'_> {
                 .all(|&n| self.still[n] == [true; 2]);
             // A fixed node over a fixed surface has no unknown force.
             let moves = |node: &&usize| !(rigid && self.still[**node] == [true; 2]);
+            if !touching.laws.by.is_node() {
+                // Points need whole sides, with fixed nodes and those of other pairs.
+                let is_same = |(of, _): &&mut (Vec<usize>, Vec<usize>)| {
+                    let first = &all[of[0]];
+                    first.slaves == touching.slaves && first.laws == touching.laws
+                };
+                match groups.iter_mut().find(is_same) {
+                    Some((of, _)) => of.push(k),
+                    None if touching.slaves.iter().any(|node| moves(&node)) => {
+                        groups.push((vec![k], touching.slaves.clone()));
+                    }
+                    None => {}
+                }
+                continue;
+            }
             for &node in touching.slaves.iter().filter(moves) {
                 of_node.entry(node).or_default().push(k);
             }
         }
-        let mut groups: Vec<(Vec<usize>, Vec<usize>)> = Vec::new();
         let mut known: HashMap<Vec<usize>, usize> = HashMap::new();
         for (node, touched) in of_node {
             let group = *known.entry(touched.clone()).or_insert(groups.len());
@@ -316,6 +331,7 @@ impl DeckObjects<'_> {
             }
             groups[group].1.push(node);
         }
+        groups.sort_by_key(|(_, nodes)| nodes.first().copied());
         for (touched, nodes) in groups {
             self.group_of(all, surfaces, &touched, &nodes)?;
         }

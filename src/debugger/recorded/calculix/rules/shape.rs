@@ -34,6 +34,25 @@ pub struct SurfaceFace {
     pub size: f64,
     /// Largest distance of a corner from the centre.
     radius: f64,
+    /// Offsets of the midside nodes from the middles of the edges, from corner k to k + 1; empty if there are none.
+    bulges: Vec<Vector>,
+}
+
+impl SurfaceFace {
+    /// Offset of the face from the flat one through its corners, at a point given by the weights of the corners.
+    fn bulge(&self, of: [f64; 4]) -> Vector {
+        let count = self.corners.len();
+        let weight = |k: usize| of[k % count];
+        let parts = self.bulges.iter().enumerate().map(|(k, bulge)| {
+            let (a, b) = (weight(k), weight(k + 1));
+            let part = match count {
+                4 => (a + b) * (b + weight(k + 2)) * (a + weight(k + 3)),
+                _ => a * b,
+            };
+            4.0 * part * bulge
+        });
+        parts.sum()
+    }
 }
 
 /// Points sorted along the axis of their largest extent, to find near ones without a look at all of them.
@@ -392,6 +411,17 @@ impl<'d> DeckShape<'d> {
         let outward = normal * (centre - body).dot(&normal).signum();
         let area = across.norm();
         let radius = at.iter().map(|corner| (corner - centre).norm());
+        let cell = self.deck.elements[element].kind.cell;
+        let edges = 0..if at.len() == 2 { 1 } else { at.len() };
+        let bulges = edges.map_while(|k| {
+            let next = (k + 1) % at.len();
+            let ends = [corners[k], corners[next]];
+            let mut edges = cell.edges().iter();
+            let edge = edges.position(|edge| edge.iter().all(|&end| ends.contains(&own[end])))?;
+            let middle = *own.get(cell.corners() + edge)?;
+            Some(self.at(middle) - (at[k] + at[next]) / 2.0)
+        });
+        let bulges = bulges.collect();
         Some(SurfaceFace {
             element,
             side,
@@ -401,6 +431,7 @@ impl<'d> DeckShape<'d> {
             size: if at.len() == 2 { area } else { area.sqrt() },
             radius: radius.fold(0.0, f64::max),
             corners,
+            bulges,
         })
     }
 
@@ -469,7 +500,8 @@ impl<'d> DeckShape<'d> {
         })
     }
 
-    /// The face nearest to a point, the distance along its normal, and the distance beyond its edge.
+    /// The face nearest to a point, the distance along its normal, and the distance beyond its edge. Midside nodes count for the
+    /// distance along the normal only.
     pub fn nearest(
         &self,
         point: Vector,
@@ -477,7 +509,7 @@ impl<'d> DeckShape<'d> {
     ) -> Option<(usize, f64, f64)> {
         let largest = faces.iter().map(|face| face.radius).fold(0.0, f64::max);
         let tie = 1e-9 * largest;
-        let mut best: Option<(f64, usize, Vector)> = None;
+        let mut best: Option<(f64, usize, Vector, [f64; 4])> = None;
         // Faces with the same closest point: the point is on an edge between them, and they share the normal.
         let mut normal = Vector::zeros();
         for (along, k) in centres.from(point) {
@@ -490,19 +522,20 @@ impl<'d> DeckShape<'d> {
                 continue;
             }
             let at: Vec<Vector> = face.corners.iter().map(|&node| self.at(node)).collect();
-            let closest = closest(point, &at);
+            let (closest, weights) = closest(point, &at);
             let distance = (point - closest).norm();
             match best {
                 Some((known, ..)) if (distance - known).abs() <= tie => normal += face.normal,
                 Some((known, ..)) if distance > known => {}
-                _ => (best, normal) = (Some((distance, k, closest)), face.normal),
+                _ => (best, normal) = (Some((distance, k, closest, weights)), face.normal),
             }
         }
-        let (_, k, closest) = best?;
+        let (_, k, closest, weights) = best?;
         let off = point - closest;
         let normal = normal.try_normalize(1e-12).unwrap_or(faces[k].normal);
-        let gap = off.dot(&normal);
-        Some((k, gap, (off - gap * normal).norm()))
+        let flat = off.dot(&normal);
+        let gap = flat - faces[k].bulge(weights).dot(&normal);
+        Some((k, gap, (off - flat * normal).norm()))
     }
 
     /// Factor of a load or displacement of a step at a time of the step.
@@ -527,33 +560,46 @@ impl<'d> DeckShape<'d> {
     }
 }
 
-/// The point of a segment, triangle or quadrilateral that is closest to a point.
-fn closest(point: Vector, corners: &[Vector]) -> Vector {
+/// The point of a segment, triangle or quadrilateral that is closest to a point, and the weights of the corners there.
+fn closest(point: Vector, corners: &[Vector]) -> (Vector, [f64; 4]) {
     let triangles: &[[usize; 3]] = match corners.len() {
         4 => &[[0, 1, 2], [0, 2, 3]],
         3 => &[[0, 1, 2]],
         _ => &[],
     };
-    let inside = triangles
-        .iter()
-        .filter_map(|of| in_triangle(point, of.map(|k| corners[k])));
+    let weigh = |parts: &[(usize, f64)]| {
+        let mut weights = [0.0; 4];
+        parts.iter().for_each(|&(k, part)| weights[k] = part);
+        weights
+    };
+    let inside = triangles.iter().filter_map(|of| {
+        let (foot, [a, b, c]) = in_triangle(point, of.map(|k| corners[k]))?;
+        Some((foot, weigh(&[(of[0], a), (of[1], b), (of[2], c)])))
+    });
     let ends = (0..corners.len()).map(|k| {
-        let (a, b) = (corners[k], corners[(k + 1) % corners.len()]);
+        let next = (k + 1) % corners.len();
+        let (a, b) = (corners[k], corners[next]);
         let along = b - a;
         let part = (point - a).dot(&along) / along.norm_squared().max(f64::MIN_POSITIVE);
-        a + along * part.clamp(0.0, 1.0)
+        let part = part.clamp(0.0, 1.0);
+        (a + along * part, weigh(&[(k, 1.0 - part), (next, part)]))
     });
     let all = inside.chain(ends);
-    let nearest = all.min_by(|a, b| (a - point).norm().total_cmp(&(b - point).norm()));
-    nearest.unwrap_or(point)
+    let nearest = all.min_by(|a, b| (a.0 - point).norm().total_cmp(&(b.0 - point).norm()));
+    nearest.unwrap_or((point, [0.0; 4]))
 }
 
-/// The projection of a point onto the plane of a triangle, if it is inside.
-fn in_triangle(point: Vector, [a, b, c]: [Vector; 3]) -> Option<Vector> {
-    let normal = (b - a).cross(&(c - a)).try_normalize(0.0)?;
+/// The projection of a point onto the plane of a triangle, with the weights of the corners, if it is inside.
+fn in_triangle(point: Vector, [a, b, c]: [Vector; 3]) -> Option<(Vector, [f64; 3])> {
+    let across = (b - a).cross(&(c - a));
+    let normal = across.try_normalize(0.0)?;
     let foot = point - normal * (point - a).dot(&normal);
-    let is_left = |p: Vector, q: Vector| (q - p).cross(&(foot - p)).dot(&normal) >= 0.0;
-    (is_left(a, b) && is_left(b, c) && is_left(c, a)).then_some(foot)
+    let part = |p: Vector, q: Vector| (q - p).cross(&(foot - p)).dot(&normal) / across.norm();
+    let parts = [part(b, c), part(c, a), part(a, b)];
+    parts
+        .iter()
+        .all(|part| *part >= 0.0)
+        .then_some((foot, parts))
 }
 
 fn mean(points: &[Vector]) -> Option<Vector> {

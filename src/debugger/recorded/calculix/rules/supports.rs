@@ -525,7 +525,7 @@ pub fn off_the_contact(shape: &DeckShape) -> Vec<RunFinding> {
         let far = rest.loaded.iter().copied();
         let set = shape.set_name(&far.filter(|node| height(node) > 0.75 * most).collect());
         let hold = |first: usize, last: usize| format!("*BOUNDARY\n{set}, {first}, {last}, 0.");
-        if pressed <= -LOADED * rest.force.norm() && rest.is_free(normal, None) {
+        if pressed < -LOADED * rest.force.norm() && rest.is_free(normal, None) {
             let axes = if shape.deck.is_solid() { 3 } else { 2 };
             return Some(RunFinding {
                 rule: "pulled off",
@@ -582,9 +582,10 @@ fn add_forces(
     (number, step): (usize, &Step),
     total: &mut BTreeMap<[usize; 3], Force>,
 ) {
-    if step.new_forces {
-        total.clear();
-    }
+    total.retain(|of, _| match of[0] {
+        0 => !step.new_forces,
+        _ => !step.new_pressures,
+    });
     let mut here: BTreeMap<[usize; 3], Force> = BTreeMap::new();
     for force in forces(shape, number) {
         if shape.group(force.nodes[0]) == Some(group) {
