@@ -21,6 +21,7 @@ use super::sweep::RunError;
 use std::collections::HashMap;
 use std::num::NonZeroUsize;
 use stickslip_core::model::Model;
+use stickslip_core::words::counted;
 use stickslip_scene::number;
 
 /// Errors below this are round-off: a few thousand times the machine precision.
@@ -562,8 +563,9 @@ fn origin(
     vec![
         format!("Scene: {}{set}", chart.scene),
         format!(
-            "Error: largest difference of {}{forces}, each relative to its largest value, at {loads} fixed loads, where every run ends an increment; reference: {}{bar}",
+            "Error: largest difference of {}{forces}, each relative to its largest value, at {}, where every run ends an increment; reference: {}{bar}",
             precision.monitors.join(", "),
+            counted(loads, "fixed load"),
             reference.source
         ),
         format!(

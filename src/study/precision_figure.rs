@@ -2,7 +2,7 @@
 //!
 //! Contact forces have a second panel. Failed runs are on a rail beside the plot, at their cost until the failure, and are listed
 //! below it. Each run is labelled with its values or, if there is no room, with a number that is explained below. A bar through a
-//! run shows the spread of its times. A triangle shows the slope of the last step of the most accurate series. Errors at round-off
+//! run shows the spread of its times. A triangle shows the slope of the last step of the first series. Errors at round-off
 //! share one line; the error bar of the reference is another one.
 
 use super::drawn::PlotError;
@@ -266,18 +266,19 @@ impl Panel<'_> {
         }
     }
 
-    /// Draws a triangle at the last step of the series with the smallest error; returns what it shows.
+    /// Draws a triangle at the last step of the first series whose error falls throughout; returns what it shows.
     fn triangle(&self, sheet: &mut Sheet, taken: &mut OccupiedArea) -> Option<String> {
         let chart = self.chart;
-        let steps = (0..chart.series.len()).filter_map(|k| {
+        let mut steps = (0..chart.series.len()).filter_map(|k| {
             let own = chart.points.iter().filter(|p| p.series == k);
             let own = own.filter_map(|p| Some((chart.cost.of(p), self.error_of(p)?)));
             let mut own: Vec<(f64, f64)> = own.filter(|p| p.0 > 0.0 && p.1 > ROUND_OFF).collect();
             own.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let falls = |pair: &[(f64, f64)]| pair[1].0 > pair[0].0 && pair[1].1 < pair[0].1;
             let &[before, last] = own.last_chunk::<2>().filter(|_| own.len() > 2)?;
-            (last.0 > before.0 && last.1 < before.1).then_some((k, before, last))
+            own.windows(2).all(falls).then_some((k, before, last))
         });
-        let (k, before, last) = steps.min_by(|a, b| a.2.1.total_cmp(&b.2.1))?;
+        let (k, before, last) = steps.next()?;
         let order = (before.1 / last.1).ln() / (last.0 / before.0).ln();
         // The middle of the step, moved towards higher cost and error, where no run of the series lies.
         let between = |part: f64, a: f64, b: f64| a * (b / a).powf(part);
