@@ -118,6 +118,16 @@ fn cards_that_couple_nodes_silence_the_rules_on_supports() {
     assert_eq!(causes(&coupled), [""; 0]);
 }
 
+/// The body cannot follow its load down to the contact.
+#[test]
+fn a_body_that_supports_keep_open_is_held_where_it_is_free() {
+    let held = text("open").replacen("*STEP", "*BOUNDARY\nTOP, 3, 3\n*STEP", 1);
+    let deck = deck(&held.replace("TOP, 3, -50.", "TOP, 3, -50.\nTOP, 1, 5."));
+    let found = examine(Some(&DeckShape::new(&deck)), None);
+    assert_eq!(found[0].rule, "held by open contact");
+    assert_eq!(found[0].lines, "*BOUNDARY\nTOP, 1, 1, 0.\nTOP, 2, 2, 0.");
+}
+
 #[test]
 fn the_faces_of_an_inner_layer_are_replaced_by_the_outer_ones() {
     let mut inner = text("reversed");
@@ -163,6 +173,7 @@ fn bodies_that_stay_on_their_contact_have_no_finding() {
     assert_eq!(found("slide", both, "TOP, 3, 0."), [""; 0]);
     let spin = "*DLOAD\nSLIDER, CENTRIF, 1., 0., 0., 0., 0., 0., 1.\n*CLOAD";
     assert_eq!(found("pull", "*CLOAD", spin), [""; 0]);
+    assert_eq!(found("pull", "=LINEAR", "=TIED"), [""; 0]);
     // New point loads leave pressures.
     let pressed = text("friction").replace("*CLOAD\nTOP, 3, -50.", "*DLOAD\nSLIDER, P2, 125.");
     let pushed = pressed.replace("*CLOAD", "*CLOAD, OP=NEW");

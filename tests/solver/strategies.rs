@@ -232,6 +232,18 @@ fn the_ladder_goes_on_with_friction_where_table_2_cycles() {
     }
 }
 
+/// Along a belt the border between sticking and sliding nodes moves by about one node per minor iteration.
+#[test]
+fn the_minor_iterations_of_a_long_belt_grow_no_faster_than_its_nodes() {
+    let minors = |refine| {
+        let run = run(&scene("bench-belt", &[("refine", refine)]));
+        assert_eq!(run.failure, None, "{refine}");
+        run.steps
+    };
+    let (short, long) = (minors("2"), minors("4"));
+    assert!(long <= 2 * short, "{short} {long}");
+}
+
 /// The way up ends at a limit point, near P = 1.783 on this mesh. Each run lets go less than the least of its increments, a
 /// 64th, below it.
 #[test]

@@ -177,6 +177,22 @@ fn old_factors_lead_to_the_same_answers_with_fewer_factorizations() {
 }
 
 #[test]
+fn solids_of_many_equations_keep_old_factors_and_small_ones_do_not() {
+    let factorizations = |refine, factor| {
+        let set = [
+            ("refine", refine),
+            ("settings.factor", factor),
+            ("history.increment", "0.5"),
+        ];
+        let run = run(&scene(BLOCKS, &set));
+        assert_eq!(run.failure, None, "{refine} {factor}");
+        run.stepper.work().factorizations
+    };
+    assert!(2 * factorizations("4", "auto") < factorizations("4", "each"));
+    assert_eq!(factorizations("2", "auto"), factorizations("2", "each"));
+}
+
+#[test]
 fn a_borrowed_interface_problem_is_the_one_that_would_have_been_found() {
     let (mut lender, before) = in_a_major("condensed");
     let mut borrower = stepper(BLOCKS, &[("settings.solver", "condensed")]);

@@ -27,7 +27,7 @@ use crate::linear::partners::{join_partners, turn_points};
 use crate::linear::point_forces::PointForces;
 use crate::linear::sizes::Sizes;
 use crate::linear::source::{LinearisationPoint, SolveResult, Work};
-use crate::model::{Geometry, Model, Refactor, Settings};
+use crate::model::{Geometry, Model, Settings};
 use std::sync::Arc;
 
 /// An equation whose coefficients are all below this is empty; otherwise the largest is one.
@@ -259,7 +259,7 @@ impl System {
         if !self.stands {
             self.assemble(model, &LinearisationPoint { u: about, ..*at });
             self.taken.clear();
-            if at.chosen.factor == Refactor::Needed {
+            if model.keeps_factors(at.chosen.factor) {
                 self.taken.extend_from_slice(about);
                 self.remembered.clear();
                 self.remembered.extend_from_slice(at.accepted.history);

@@ -36,6 +36,9 @@ pub use settings::{
     ResidualMethod, SearchMode, Settings, SlipCount, Sticking, Strategy, TieRule, Touch,
 };
 
+/// Equations from which on [`Refactor::Auto`] keeps old factors.
+const MANY_EQUATIONS: usize = 4000;
+
 /// A checked scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Model {
@@ -335,6 +338,15 @@ impl Model {
     pub fn has_solids(&self) -> bool {
         let mut bodies = self.bodies.iter();
         bodies.any(|body| matches!(body.kind, BodyKind::Solid(_)))
+    }
+
+    /// Whether old factors are kept where they help, with this choice of when to factor.
+    pub fn keeps_factors(&self, chosen: Refactor) -> bool {
+        match chosen {
+            Refactor::Auto => self.has_solids() && self.dofs.equations >= MANY_EQUATIONS,
+            Refactor::Each => false,
+            Refactor::Needed => true,
+        }
     }
 
     /// Whether x is a radius and y the axis; forces then refer to the whole circumference.

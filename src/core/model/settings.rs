@@ -15,7 +15,7 @@ documented! {
         pub residual: ResidualMethod,
         /// The system that the minor iterations solve. Default: auto.
         pub solver: LinearSolver,
-        /// How often the stiffness of the bodies is computed and factored. Default: each.
+        /// How often the stiffness of the bodies is computed and factored. Default: auto.
         #[serde(skip_serializing_if = "is_default")]
         pub factor: Refactor,
         /// Whether the tangent includes the change of the contact geometry. Default: consistent.
@@ -33,7 +33,8 @@ documented! {
         pub touch: Touch,
         /// How ties in Table 2 are resolved. Default: keep.
         pub ties: TieRule,
-        /// Maximum number of minor iterations per major iteration. Default: 100.
+        /// Maximum number of minor iterations per major iteration; on the ladder, after its first strategy, at least two per contact.
+        /// Default: 100.
         pub minors: u32,
         /// Maximum number of major iterations per increment. Default: 60.
         pub majors: u32,
@@ -228,8 +229,10 @@ documented! {
 documented! {
     /// How often the bodies' stiffness is taken and factored.
     pub choice Refactor {
-        /// In every major iteration, as in the paper.
+        /// `needed` if the scene has solids and at least 4,000 equations, where it was faster in all measured scenes; else `each`.
         #[default]
+        Auto,
+        /// In every major iteration, as in the paper.
         Each,
         /// In the first major iteration of an increment, and whenever the out-of-balance force or the displacement correction has
         /// fallen by less than a factor of ten. The out-of-balance force and the contact geometry are always current, so the

@@ -7,7 +7,7 @@ use crate::interface::method::SearchProgress;
 use crate::linear::norms::Norms;
 use crate::linear::singular::Singular;
 use crate::linear::source::SolveResult;
-use crate::model::{AtLimit, Friction, Mode, Refactor, ResidualMethod, SlipCount, Sticking};
+use crate::model::{AtLimit, Friction, Mode, ResidualMethod, SlipCount, Sticking};
 use crate::step::event::{Failure, Outcome};
 use crate::step::iterate::Iterate;
 use crate::step::major_history::{MajorCycle, RepeatScales};
@@ -123,7 +123,7 @@ impl Iterate {
         let loaded = state.way.is_none() && state.recovery.motion.is_none();
         // The stiffness of a pressure that follows its faces changes with the load.
         let dead = self.model.has_dead_loads();
-        loaded && dead && state.controls.settings.factor == Refactor::Needed
+        loaded && dead && self.model.keeps_factors(state.controls.settings.factor)
     }
 
     /// Reuses the current stiffness in the next major iteration, if the settings allow it.

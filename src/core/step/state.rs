@@ -315,7 +315,11 @@ impl State {
 
     /// The settings in force: with the strategy of the current rung, its update of T_max, and the changes of a fallback.
     pub fn settings(&self) -> Settings {
-        let mut settings = strategy::in_force(&self.controls.settings, self.attempt.search.rung);
+        let mut settings = strategy::in_force(
+            &self.controls.settings,
+            self.attempt.search.rung,
+            self.nodes.len(),
+        );
         if let Some(route) = self.recovery.fallback {
             settings = route.by.in_force(settings);
         }

@@ -67,15 +67,17 @@ pub fn next_rung(chosen: Strategy, rung: usize, contacts: usize) -> Option<(usiz
     Some((next, *method.rungs().get(next)?))
 }
 
-/// The effective settings on a rung (from 0; beyond the last one, those of the last). The strategy is that of the rung, and
-/// `t_max` is what this strategy requires.
-pub fn in_force(chosen: &Settings, rung: usize) -> Settings {
+/// The effective settings on a rung (from 0; beyond the last one, those of the last) with this number of contacts. The strategy is
+/// that of the rung, and `t_max` is what this strategy requires. After the first rung a border between sticking and sliding nodes
+/// may move by one node per minor iteration: there may be two per contact (a belt on a drum needs 1.5).
+pub fn in_force(chosen: &Settings, rung: usize, contacts: usize) -> Settings {
     let mut settings = *chosen;
     let rungs = rungs(chosen.strategy);
     if let Some(&strategy) = rungs.get(rung.min(rungs.len().saturating_sub(1))) {
         settings.strategy = strategy;
         if rung > 0 {
             settings.t_max = BoundUpdate::Consistent;
+            settings.minors = settings.minors.max(2 * contacts as u32);
         }
     }
     settings.t_max = method(settings.strategy).bound(settings.t_max);

@@ -139,7 +139,7 @@ fn solved(
             return None;
         }
         let mut problem = of_ladder.clone();
-        problem.settings = in_force(&of_ladder.settings, rung);
+        problem.settings = in_force(&of_ladder.settings, rung, problem.nodes.len());
         let found = match strategy {
             // The result of these strategies is in the run's messages; here the forces have to be unique.
             Strategy::Copositive | Strategy::GaussSeidel => return None,

@@ -106,7 +106,7 @@ impl Fallback {
 
     /// Whether the fallback changes these settings.
     fn changes(self, chosen: &Settings) -> bool {
-        let first = strategy::in_force(chosen, 0);
+        let first = strategy::in_force(chosen, 0, 0);
         self.in_force(first) != first
     }
 }

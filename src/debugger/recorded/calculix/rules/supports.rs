@@ -5,7 +5,7 @@ use nalgebra::{SMatrix, SVector};
 use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
 use stickslip_core::model::RunFinding;
-use stickslip_exchange::inp::deck::{Direction, Step, Value, Volume};
+use stickslip_exchange::inp::deck::{Direction, Normal, Step, Value, Volume};
 use stickslip_scene::number::sig4;
 
 /// Translations along x, y, z, then rotations about them, scaled by the body's size.
@@ -242,6 +242,12 @@ fn pairs_of<'s>(
     pairs.filter(move |(_, pair)| pair.groups.contains(&group))
 }
 
+/// Whether a pair holds in tension and shear, too.
+fn is_tied(shape: &DeckShape, pair: usize) -> bool {
+    let law = &shape.deck.interactions[shape.deck.pairs[pair].interaction];
+    matches!(law.normal, Normal::Tied { .. })
+}
+
 fn groups(shape: &DeckShape) -> BTreeSet<usize> {
     shape.group_of.iter().copied().collect()
 }
@@ -306,10 +312,23 @@ pub fn open_at_start(shape: &DeckShape) -> Vec<RunFinding> {
         let along = force.iamax();
         let travel = rounded_up(1.2 * node.gap).copysign(force[along]);
         let modes = shape.modes(group);
-        let others = (0..3).filter(|k| modes[*k] && *k != along);
-        let others: String = others
-            .map(|k| format!("{set}, {0}, {0}, 0.\n", k + 1))
+        let moves = |k: usize| free.iter().any(|motion| motion[k].abs() > 1e-3);
+        // Supports that keep the body from following the load also keep it from closing the gap.
+        let closes = moves(along);
+        let held = (0..3).filter(|&k| match closes {
+            true => modes[k] && k != along,
+            false => moves(k),
+        });
+        let mut lines: Vec<String> = held
+            .map(|k| format!("{set}, {0}, {0}, 0.", k + 1))
             .collect();
+        lines.extend(closes.then(|| format!("{set}, {0}, {0}, {travel}", along + 1)));
+        let cure = match closes {
+            true => format!(
+                "close the gap first: a step before the load with a displacement of {set} by more than the gap"
+            ),
+            false => format!("hold {name} in these directions until the contact is closed"),
+        };
         Some(RunFinding {
             rule: "held by open contact",
             cause: format!(
@@ -321,10 +340,11 @@ pub fn open_at_start(shape: &DeckShape) -> Vec<RunFinding> {
                 shape.pair_name(pair),
                 vector(force)
             ),
-            cure: format!(
-                "close the gap first: a step before the load with a displacement of {set} by more than the gap"
-            ),
-            lines: format!("*BOUNDARY\n{others}{set}, {0}, {0}, {travel}", along + 1),
+            cure,
+            lines: match lines.is_empty() {
+                true => String::new(),
+                false => format!("*BOUNDARY\n{}", lines.join("\n")),
+            },
         })
     })
 }
@@ -370,7 +390,8 @@ fn free_groups(
         let mut motion = GroupMotion::new(shape, group);
         for (k, pair) in pairs_of(shape, group) {
             let law = &shape.deck.interactions[shape.deck.pairs[k].interaction];
-            motion.hold_contacts(shape, pair, law.friction > 0.0);
+            let sticks = law.friction > 0.0 || is_tied(shape, k);
+            motion.hold_contacts(shape, pair, sticks);
         }
         let free = motion.free(shape.modes(group));
         let moves = !free.is_empty() && motion.is_loaded(&free);
@@ -431,7 +452,8 @@ impl Resting<'_> {
             let touching = touching.filter(|node| node.beyond <= 0.1 * pair.sizes[0]);
             let is_flat = |node: &SlaveGap| pair.masters[node.face].normal.dot(&normal) > FLAT;
             let touching: Vec<&SlaveGap> = touching.collect();
-            if touching.is_empty() || !touching.iter().all(|node| is_flat(node)) {
+            let rests = !touching.is_empty() && touching.iter().all(|node| is_flat(node));
+            if !rests || is_tied(shape, k) {
                 continue;
             }
             let at = touching.iter().map(|node| shape.at(node.node));
