@@ -118,6 +118,16 @@ fn cards_that_couple_nodes_silence_the_rules_on_supports() {
     assert_eq!(causes(&coupled), [""; 0]);
 }
 
+/// The body cannot follow its load down to the contact.
+#[test]
+fn a_body_that_supports_keep_open_is_held_where_it_is_free() {
+    let held = text("open").replacen("*STEP", "*BOUNDARY\nTOP, 3, 3\n*STEP", 1);
+    let deck = deck(&held.replace("TOP, 3, -50.", "TOP, 3, -50.\nTOP, 1, 5."));
+    let found = examine(Some(&DeckShape::new(&deck)), None);
+    assert_eq!(found[0].rule, "held by open contact");
+    assert_eq!(found[0].lines, "*BOUNDARY\nTOP, 1, 1, 0.\nTOP, 2, 2, 0.");
+}
+
 #[test]
 fn the_faces_of_an_inner_layer_are_replaced_by_the_outer_ones() {
     let mut inner = text("reversed");

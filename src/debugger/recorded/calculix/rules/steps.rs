@@ -76,7 +76,7 @@ pub fn first_increment(shape: &DeckShape) -> Vec<RunFinding> {
         let time = step.time;
         let first = relative(shape, k, pair, [0.0, time.initial]).norm();
         let size = pair.sizes[0];
-        if first <= FIRST * size * (1.0 + 1e-9) || time.period == 0.0 {
+        if first <= FIRST * size * (1.0 + 1e-4) || time.period == 0.0 {
             return None;
         }
         let initial = rounded(time.initial * ADVISED * size / first);

@@ -312,10 +312,23 @@ pub fn open_at_start(shape: &DeckShape) -> Vec<RunFinding> {
         let along = force.iamax();
         let travel = rounded_up(1.2 * node.gap).copysign(force[along]);
         let modes = shape.modes(group);
-        let others = (0..3).filter(|k| modes[*k] && *k != along);
-        let others: String = others
-            .map(|k| format!("{set}, {0}, {0}, 0.\n", k + 1))
+        let moves = |k: usize| free.iter().any(|motion| motion[k].abs() > 1e-3);
+        // Supports that keep the body from following the load also keep it from closing the gap.
+        let closes = moves(along);
+        let held = (0..3).filter(|&k| match closes {
+            true => modes[k] && k != along,
+            false => moves(k),
+        });
+        let mut lines: Vec<String> = held
+            .map(|k| format!("{set}, {0}, {0}, 0.", k + 1))
             .collect();
+        lines.extend(closes.then(|| format!("{set}, {0}, {0}, {travel}", along + 1)));
+        let cure = match closes {
+            true => format!(
+                "close the gap first: a step before the load with a displacement of {set} by more than the gap"
+            ),
+            false => format!("hold {name} in these directions until the contact is closed"),
+        };
         Some(RunFinding {
             rule: "held by open contact",
             cause: format!(
@@ -327,10 +340,11 @@ pub fn open_at_start(shape: &DeckShape) -> Vec<RunFinding> {
                 shape.pair_name(pair),
                 vector(force)
             ),
-            cure: format!(
-                "close the gap first: a step before the load with a displacement of {set} by more than the gap"
-            ),
-            lines: format!("*BOUNDARY\n{others}{set}, {0}, {0}, {travel}", along + 1),
+            cure,
+            lines: match lines.is_empty() {
+                true => String::new(),
+                false => format!("*BOUNDARY\n{}", lines.join("\n")),
+            },
         })
     })
 }
