@@ -1,13 +1,11 @@
 //! `Y`: copies the selection of the focused pane to the terminal's clipboard, as text.
 
 use crate::app::{App, Effect};
-use crate::layout::Pane;
+use crate::panes;
 use crate::screen;
 use crate::view::View;
 use stickslip_debugger::action::CopyTarget;
 use stickslip_debugger::explain::names;
-use stickslip_debugger::explain::remedies;
-use stickslip_debugger::history::verdicts::{self, summaries};
 use stickslip_debugger::history::watches::{Watch, WatchQuantity};
 use stickslip_scene::shown;
 
@@ -17,7 +15,7 @@ const MOST: usize = 50_000;
 const SHOWN: usize = 60;
 
 /// A name for the message, and the copied text.
-type NamedText = (String, String);
+pub(crate) type NamedText = (String, String);
 
 impl App {
     /// Copies something and shows what was copied.
@@ -62,49 +60,11 @@ fn selected_text(app: &App, view: &View) -> Result<NamedText, String> {
     if screen::is_hidden(app.panes.focus, app, view) {
         return Err("hidden until you predict what follows".into());
     }
-    match app.panes.focus {
-        Pane::Nodes | Pane::Shape | Pane::Contact | Pane::Lesson => row(app, view),
-        Pane::Decision => value(WatchQuantity::Margin, app, view),
-        Pane::Residual => value(WatchQuantity::Residual, app, view),
-        Pane::Curve => monitored(app, view),
-        Pane::Timeline => Ok(("a command".into(), format!("goto {}", view.cursor))),
-        Pane::Branches => {
-            let all = view.tree.map(summaries).unwrap_or_default();
-            let order = verdicts::order(&all);
-            let row = order.get(app.branch).or(order.first());
-            let (number, _) = row.ok_or("no branch to copy")?;
-            Ok(("a command".into(), format!("branch b{}", number + 1)))
-        }
-        Pane::Remedies => {
-            let trials = view.trials();
-            let at = app.remedy.min(trials.len().saturating_sub(1));
-            let trial = trials
-                .get(at)
-                .ok_or("no remedy tried yet; press r to try all")?;
-            if let Some(entry) = trial.how.scene_entry() {
-                return Ok(("the entry for the scene".into(), entry));
-            }
-            let mut cells = vec![trial.label.clone()];
-            cells.extend(remedies::row(trial));
-            Ok(("the remedy".into(), cells.join("\t")))
-        }
-        Pane::Diagnosis if view.model.finished.is_some() => {
-            let findings = view.model.finished.iter().flat_map(|run| &run.findings);
-            let cure = findings.filter(|found| !found.lines.is_empty());
-            let cure = cure.take(app.answer + 1).last();
-            let cure = cure.ok_or("no cure with lines for the deck")?;
-            Ok(("the lines for the deck".into(), cure.lines.clone()))
-        }
-        Pane::Diagnosis => {
-            let found = view.examination().flatten();
-            let found = found.ok_or("no diagnosis yet; press d")?;
-            Ok(("the diagnosis".into(), found.lines().join("\n")))
-        }
-    }
+    (panes::entry(app.panes.focus).copied)(app, view)
 }
 
 /// The selected slave node and all its numbers, separated by tabs.
-fn row(app: &App, view: &View) -> Result<NamedText, String> {
+pub(crate) fn row(app: &App, view: &View) -> Result<NamedText, String> {
     let slave = app.slave(view);
     if view.model.contacts.is_empty() {
         return Err("this scene has no slave nodes".into());
@@ -123,7 +83,8 @@ fn row(app: &App, view: &View) -> Result<NamedText, String> {
     Ok((format!("the row of {name}"), cells.join("\t")))
 }
 
-fn value(quantity: WatchQuantity, app: &App, view: &View) -> Result<NamedText, String> {
+/// A quantity of the selected node.
+pub(crate) fn value(quantity: WatchQuantity, app: &App, view: &View) -> Result<NamedText, String> {
     let slave = app.slave(view);
     if quantity.is_nodal() && view.model.contacts.is_empty() {
         return Err("this scene has no slave nodes".into());
@@ -138,7 +99,7 @@ fn value(quantity: WatchQuantity, app: &App, view: &View) -> Result<NamedText, S
 }
 
 /// The load and the shown monitor at the last accepted increment.
-fn monitored(app: &App, view: &View) -> Result<NamedText, String> {
+pub(crate) fn monitored(app: &App, view: &View) -> Result<NamedText, String> {
     let at = app.watched(view);
     let monitor = view.model.monitors.get(at);
     let monitor = monitor.ok_or("this scene has no monitors")?;

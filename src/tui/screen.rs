@@ -3,25 +3,16 @@
 use crate::app::{App, Overlay};
 use crate::chooser_state::Preview;
 use crate::layout::{self, Choice, Pane, ScreenAreas};
-use crate::panes::branches;
 use crate::panes::chooser;
-use crate::panes::contact;
-use crate::panes::curve;
-use crate::panes::decision;
-use crate::panes::diagnosis;
 use crate::panes::footer;
-use crate::panes::frame;
 use crate::panes::help;
 use crate::panes::lesson;
 use crate::panes::manual;
-use crate::panes::nodes;
-use crate::panes::remedies;
-use crate::panes::residual;
 use crate::panes::shape;
 use crate::panes::solver;
 use crate::panes::status;
-use crate::panes::timeline;
 use crate::panes::workprecision;
+use crate::panes::{entry, frame};
 use crate::theme::Theme;
 use crate::view::View;
 use ratatui::buffer::Buffer;
@@ -109,13 +100,7 @@ fn harmless(buffer: &mut Buffer, area: Rect) {
 
 /// Whether a pane is hidden because it shows what the user still has to predict.
 pub fn is_hidden(pane: Pane, app: &App, view: &View) -> bool {
-    let tells = [
-        Pane::Timeline,
-        Pane::Diagnosis,
-        Pane::Branches,
-        Pane::Remedies,
-    ];
-    tells.contains(&pane) && app.learning.hides_any(view)
+    entry(pane).is_ahead && app.learning.hides_any(view)
 }
 
 fn draw_pane(pane: Pane, buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
@@ -125,19 +110,7 @@ fn draw_pane(pane: Pane, buffer: &mut Buffer, area: Rect, app: &App, view: &View
         Line::styled(text, app.theme.faint).render(inner, buffer);
         return;
     }
-    match pane {
-        Pane::Nodes => nodes::draw(buffer, area, app, view),
-        Pane::Decision => decision::draw(buffer, area, app, view),
-        Pane::Residual => residual::draw(buffer, area, app, view),
-        Pane::Shape => shape::draw(buffer, area, app, view),
-        Pane::Contact => contact::draw(buffer, area, app, view),
-        Pane::Curve => curve::draw(buffer, area, app, view),
-        Pane::Lesson => lesson::draw(buffer, area, app),
-        Pane::Timeline => timeline::draw(buffer, area, app, view),
-        Pane::Diagnosis => diagnosis::draw(buffer, area, app, view),
-        Pane::Branches => branches::draw(buffer, area, app, view),
-        Pane::Remedies => remedies::draw(buffer, area, app, view),
-    }
+    (entry(pane).draw)(buffer, area, app, view);
 }
 
 /// The screen of a session as plain text, one line per row, without trailing blanks.

@@ -1,8 +1,9 @@
 //! The branch tree, with the outcome and cost of each branch, and a comparison of the selected branch with the current one.
 
-use super::frame;
+use super::{PaneEntry, frame};
 use crate::app::App;
 use crate::columns::rows_shown;
+use crate::copying::NamedText;
 use crate::layout::Pane;
 use crate::paint;
 use crate::view::View;
@@ -26,8 +27,25 @@ const NAME: usize = 12;
 const MODE: usize = 8;
 const NUMBER: usize = 8;
 
+/// The pane.
+pub const PANE: PaneEntry = PaneEntry {
+    draw,
+    actions: &[("repeat", "go there"), ("compare", "compare")],
+    copied,
+    is_ahead: true,
+};
+
+/// The command that goes to the selected branch.
+fn copied(app: &App, view: &View) -> Result<NamedText, String> {
+    let all = view.tree.map(verdicts::summaries).unwrap_or_default();
+    let order = verdicts::order(&all);
+    let row = order.get(app.branch).or(order.first());
+    let (number, _) = row.ok_or("no branch to copy")?;
+    Ok(("a command".into(), format!("branch b{}", number + 1)))
+}
+
 /// Draws the tree and the comparison.
-pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
+fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let theme = &app.theme;
     let Some(tree) = view.tree else {
         frame(buffer, area, Pane::Branches, "Branches", app);

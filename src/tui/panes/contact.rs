@@ -1,10 +1,11 @@
 //! The contact of the selected node: its geometry and force in numbers, and below them as many of three pictures as fit: the force
 //! in the Coulomb cone (in space, the friction circle with the slip) with the trail of the last iterations, T_max over the minor iterations as a cobweb, and who pushed the node.
 
-use super::frame;
+use super::{PaneEntry, frame};
 use crate::app::App;
 use crate::canvas::{Canvas, Dot};
 use crate::chartframe::ChartFrame;
+use crate::copying::row;
 use crate::layout::Pane;
 use crate::paint;
 use crate::theme::Theme;
@@ -39,8 +40,16 @@ enum Picture {
     Pushes,
 }
 
+/// The pane.
+pub const PANE: PaneEntry = PaneEntry {
+    draw,
+    actions: &[("right", "next picture")],
+    copied: row,
+    is_ahead: false,
+};
+
 /// Draws the contact.
-pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
+fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let theme = &app.theme;
     let slave = app.slave(view);
     let name = view.slave(slave);

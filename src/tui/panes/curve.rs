@@ -1,9 +1,10 @@
 //! The load factor over a monitor at each accepted increment up to the shown frame.
 
-use super::frame;
+use super::{PaneEntry, frame};
 use crate::app::App;
 use crate::canvas::Canvas;
 use crate::chartframe::ChartFrame;
+use crate::copying::monitored;
 use crate::layout::Pane;
 use crate::paint;
 use crate::theme::Theme;
@@ -17,8 +18,16 @@ use stickslip_scene::number::{shortest, sig2, sig6};
 /// Width of the axis with its labels.
 const LABELS: u16 = 9;
 
+/// The pane.
+pub const PANE: PaneEntry = PaneEntry {
+    draw,
+    actions: &[("monitor", "monitor")],
+    copied: monitored,
+    is_ahead: false,
+};
+
 /// Draws the curve.
-pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
+fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let theme = &app.theme;
     let monitors = &view.model.monitors;
     let at = app.watched(view);

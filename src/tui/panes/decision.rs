@@ -1,7 +1,8 @@
 //! The decision on the selected node: Table 2 with the cell that fired, and the tested inequalities with their values.
 
-use super::frame;
+use super::{PaneEntry, frame};
 use crate::app::App;
+use crate::copying::value;
 use crate::layout::Pane;
 use crate::paint;
 use crate::theme::Theme;
@@ -21,6 +22,7 @@ use stickslip_debugger::explain::report;
 use stickslip_debugger::explain::reported_pushes;
 use stickslip_debugger::explain::round_off::NOTE;
 use stickslip_debugger::explain::tested::{self, Dimension};
+use stickslip_debugger::history::watches::WatchQuantity;
 use stickslip_scene::number::{self, shortest, sig4};
 use unicode_width::UnicodeWidthStr;
 
@@ -33,8 +35,16 @@ const GRID: usize = 6;
 /// Lines of the headings and one row.
 const ROW: usize = 3;
 
+/// The pane.
+pub const PANE: PaneEntry = PaneEntry {
+    draw,
+    actions: &[],
+    copied: |app, view| value(WatchQuantity::Margin, app, view),
+    is_ahead: false,
+};
+
 /// Draws the decision.
-pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
+fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let theme = &app.theme;
     let count = view.model.contacts.len();
     let slave = app.slave(view);

@@ -1,8 +1,9 @@
 //! The diagnosis: What, Why and Try, and below them the loop, the census, the rates and the details. Enter takes the selected line
 //! of Try, or folds the selected part below. If nothing failed, the consistent states are listed side by side, and Enter starts from the selected one.
 
-use super::frame;
+use super::{PaneEntry, frame};
 use crate::app::App;
+use crate::copying::NamedText;
 use crate::layout::Pane;
 use crate::paint;
 use crate::view::View;
@@ -35,8 +36,29 @@ pub fn choices(page: &DiagnosisPage) -> usize {
     choices.max(1)
 }
 
+/// The pane.
+pub const PANE: PaneEntry = PaneEntry {
+    draw,
+    actions: &[("repeat", "take"), ("page-down", "scroll")],
+    copied,
+    is_ahead: true,
+};
+
+/// The diagnosis; of a finished run, the lines of the selected cure for its deck.
+fn copied(app: &App, view: &View) -> Result<NamedText, String> {
+    if let Some(run) = &view.model.finished {
+        let cures = run.findings.iter().filter(|found| !found.lines.is_empty());
+        let cure = cures.take(app.answer + 1).last();
+        let cure = cure.ok_or("no cure with lines for the deck")?;
+        return Ok(("the lines for the deck".into(), cure.lines.clone()));
+    }
+    let found = view.examination().flatten();
+    let found = found.ok_or("no diagnosis yet; press d")?;
+    Ok(("the diagnosis".into(), found.lines().join("\n")))
+}
+
 /// Draws the diagnosis.
-pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
+fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let theme = &app.theme;
     let width = usize::from(area.width.saturating_sub(2));
     let height = usize::from(area.height.saturating_sub(2));

@@ -228,10 +228,13 @@ fn table_keys(app: &App, view: Option<&View>, places: &ScreenAreas, room: usize)
     let context = app.context(view, &[]);
     // A count is a prefix: only the actions that it applies to follow it.
     let follows = |entry: &&ActionEntry| app.count.is_none() || entry.takes_count();
-    let own = own(app.panes.focus).iter().filter_map(|(name, label)| {
-        let entry = by_name(name).ok().filter(|_| app.count.is_none())?;
-        Some((entry, key(entry)?, (*label).to_owned()))
-    });
+    let own = super::entry(app.panes.focus)
+        .actions
+        .iter()
+        .filter_map(|(name, label)| {
+            let entry = by_name(name).ok().filter(|_| app.count.is_none())?;
+            Some((entry, key(entry)?, (*label).to_owned()))
+        });
     let general = ACTIONS
         .iter()
         .filter(|entry| !entry.label.is_empty() && (teaches || entry.group != Group::Learn))
@@ -249,25 +252,6 @@ fn table_keys(app: &App, view: Option<&View>, places: &ScreenAreas, room: usize)
         .into_iter()
         .map(|(entry, key, label)| (needed(entry), key, label));
     fitted(&hints.collect::<Vec<_>>(), room, &app.theme)
-}
-
-/// The actions that belong to a pane, with their labels.
-fn own(pane: Pane) -> &'static [(&'static str, &'static str)] {
-    match pane {
-        Pane::Shape => &[
-            ("enlarge", "enlarge"),
-            ("shrink", "shrink"),
-            ("fit", "fit"),
-            ("magnify", "magnify"),
-        ],
-        Pane::Contact => &[("right", "next picture")],
-        Pane::Curve => &[("monitor", "monitor")],
-        Pane::Timeline => &[("left", "back"), ("right", "forward")],
-        Pane::Diagnosis => &[("repeat", "take"), ("page-down", "scroll")],
-        Pane::Branches => &[("repeat", "go there"), ("compare", "compare")],
-        Pane::Remedies => &[("repeat", "apply")],
-        Pane::Nodes | Pane::Decision | Pane::Residual | Pane::Lesson => &[],
-    }
 }
 
 /// Whether the footer always shows an action.

@@ -1,8 +1,11 @@
 //! The lesson: the tutor's text and the next task.
 
+use super::PaneEntry;
 use crate::app::App;
+use crate::copying::row;
 use crate::paint;
 use crate::theme::Theme;
+use crate::view::View;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
@@ -24,8 +27,16 @@ pub fn rows(app: &App, width: u16) -> u16 {
     }
 }
 
+/// The pane.
+pub const PANE: PaneEntry = PaneEntry {
+    draw,
+    actions: &[],
+    copied: row,
+    is_ahead: false,
+};
+
 /// Draws the lesson, with the next task at the bottom. If the text does not fit, a part of it is shown, with the key for more.
-pub fn draw(buffer: &mut Buffer, area: Rect, app: &App) {
+fn draw(buffer: &mut Buffer, area: Rect, app: &App, _: &View) {
     let Some(tutor) = &app.learning.lesson else {
         return;
     };

@@ -1,8 +1,9 @@
 //! The slave-node table: the values of every slave node in the shown minor iteration.
 
-use super::frame;
+use super::{PaneEntry, frame};
 use crate::app::App;
 use crate::columns::rows_shown;
+use crate::copying;
 use crate::layout::Pane;
 use crate::paint;
 use crate::theme::{self, Theme};
@@ -106,8 +107,16 @@ impl Columns {
     }
 }
 
+/// The pane.
+pub const PANE: PaneEntry = PaneEntry {
+    draw,
+    actions: &[],
+    copied: copying::row,
+    is_ahead: false,
+};
+
 /// Draws the table.
-pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
+fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let count = view.model.contacts.len();
     let selected = app.slave(view);
     let order = app.order(view);

@@ -1,7 +1,8 @@
 //! The remedies that were tried, with their cost and result; the selected one can be applied.
 
-use super::frame;
+use super::{PaneEntry, frame};
 use crate::app::App;
+use crate::copying::NamedText;
 use crate::layout::Pane;
 use crate::paint;
 use crate::view::View;
@@ -20,8 +21,31 @@ const HEAD: usize = 2;
 /// Minimum width of the remedies' names.
 const NAME: usize = 26;
 
+/// The pane.
+pub const PANE: PaneEntry = PaneEntry {
+    draw,
+    actions: &[("repeat", "apply")],
+    copied,
+    is_ahead: true,
+};
+
+/// The selected remedy: its entry for the scene, or its row.
+fn copied(app: &App, view: &View) -> Result<NamedText, String> {
+    let trials = view.trials();
+    let at = app.remedy.min(trials.len().saturating_sub(1));
+    let trial = trials
+        .get(at)
+        .ok_or("no remedy tried yet; press r to try all")?;
+    if let Some(entry) = trial.how.scene_entry() {
+        return Ok(("the entry for the scene".into(), entry));
+    }
+    let mut cells = vec![trial.label.clone()];
+    cells.extend(remedies::row(trial));
+    Ok(("the remedy".into(), cells.join("\t")))
+}
+
 /// Draws the list.
-pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
+fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let theme = &app.theme;
     let tried = view.background.and_then(|background| background.tried());
     let Some(tried) = tried else {

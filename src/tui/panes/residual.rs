@@ -1,8 +1,9 @@
 //! The residual by major iteration in the shown increment, on a log scale, with its limit.
 
-use super::frame;
+use super::{PaneEntry, frame};
 use crate::app::App;
 use crate::convergence::{self, Point};
+use crate::copying::value;
 use crate::layout::Pane;
 use crate::paint;
 use crate::theme::Theme;
@@ -12,6 +13,7 @@ use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
 use stickslip_core::linear::norms::Norms;
 use stickslip_debugger::explain::names;
+use stickslip_debugger::history::watches::WatchQuantity;
 use stickslip_scene::number;
 
 /// Minimum height of a chart; where there is less, there are numbers of this width.
@@ -20,8 +22,16 @@ const NUMBER: usize = 13;
 /// Minimum height for a line about the judge.
 const ROOM_FOR_JUDGE: u16 = 7;
 
+/// The pane.
+pub const PANE: PaneEntry = PaneEntry {
+    draw,
+    actions: &[],
+    copied: |app, view| value(WatchQuantity::Residual, app, view),
+    is_ahead: false,
+};
+
 /// Draws the residual.
-pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
+fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let theme = &app.theme;
     let title = match view.model.finished {
         None => "Residual by major iteration",

@@ -3,10 +3,11 @@
 //! nodes, and slave nodes by the letters of their modes. Solids show the boundaries between materials, and their elements if these
 //! are large enough. Small displacements are magnified.
 
-use super::frame;
+use super::{PaneEntry, frame};
 use crate::app::App;
 use crate::camera::Camera;
 use crate::canvas::{Canvas, Dot};
+use crate::copying::row;
 use crate::layout::Pane;
 use crate::paint;
 use crate::run_shape;
@@ -61,8 +62,21 @@ const WORST: &str = "◆";
 /// Dots between two normals of an element.
 const SPACING: f64 = 16.0;
 
+/// The pane.
+pub const PANE: PaneEntry = PaneEntry {
+    draw,
+    actions: &[
+        ("enlarge", "enlarge"),
+        ("shrink", "shrink"),
+        ("fit", "fit"),
+        ("magnify", "magnify"),
+    ],
+    copied: row,
+    is_ahead: false,
+};
+
 /// Draws the shape.
-pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
+fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let inner = frame(buffer, area, Pane::Shape, "Shape", app);
     if let Some(run) = &view.model.finished {
         return run_shape::draw(buffer, inner, run, app, view);

@@ -4,7 +4,7 @@
 //! Rules separate majors and increments, a bracket marks a cycle, and forced modes are lower-case letters. Only the columns around
 //! the cursor are computed, so that drawing does not depend on the length of the history.
 
-use super::frame;
+use super::{PaneEntry, frame};
 use crate::app::App;
 use crate::columns::{self, Column, rows_shown};
 use crate::layout::Pane;
@@ -28,8 +28,16 @@ const LETTERS: &str =
 /// Minimum and maximum width of the names.
 const NAME: Range<usize> = 9..14;
 
+/// The pane.
+pub const PANE: PaneEntry = PaneEntry {
+    draw,
+    actions: &[("left", "back"), ("right", "forward")],
+    copied: |_, view| Ok(("a command".into(), format!("goto {}", view.cursor))),
+    is_ahead: true,
+};
+
 /// Draws the timeline.
-pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
+fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let theme = &app.theme;
     let strips = view.strips;
     let mut title = title(view);
