@@ -10,8 +10,8 @@ use stickslip_scene::number::{sig2, sig6, significant};
 use stickslip_scene::readers::{FileKind, mistaken};
 use stickslip_scene::shown::aligned;
 use stickslip_study::chart_file::{Chart, Truth};
-use stickslip_study::chart_runs::{PlannedChart, sweep};
-use stickslip_study::precision::{Cost, Measure, Point, Precision, PrecisionError, ROUND_OFF};
+use stickslip_study::chart_runs::{PlannedChart, PrecisionError, sweep};
+use stickslip_study::precision::{Cost, Measure, Point, Precision, ROUND_OFF};
 use stickslip_study::precision_table;
 use stickslip_study::{Vary, precision_figure};
 
@@ -46,12 +46,18 @@ pub struct Args {
     /// Marks the cheapest run whose error is at most this
     #[arg(long, value_name = "ERROR", value_parser = target)]
     target: Option<f64>,
-    /// The horizontal axis: time, factorizations or minors
+    /// The cost: time, factorizations or minors
     #[arg(long, value_name = "WHAT", default_value = "time", value_parser = cost)]
     cost: Cost,
-    /// The reference: a table (CSV with the columns load and monitors), or finest: the finest run of the chart [default: the
-    /// built-in table if there is one, else finest]
-    #[arg(long, value_name = "FILE|finest")]
+    /// Adds the runs of other programs, from a table like that of --csv; may be repeated (`help maps-and-charts`)
+    #[arg(long, value_name = "FILE")]
+    peers: Vec<PathBuf>,
+    /// Draws the error on the horizontal axis and the cost on the vertical one
+    #[arg(long)]
+    error_on_x: bool,
+    /// The reference: a table (CSV with the columns load and monitors), finest: the finest run of the chart, or richardson: the
+    /// limit of the three finest runs of a series, with its error bar [default: the built-in table if there is one, else finest]
+    #[arg(long, value_name = "FILE|finest|richardson")]
     reference: Option<String>,
     /// Repeats every run this many times, and takes the median of the times
     #[arg(long, value_name = "N", default_value_t = 3)]
@@ -74,16 +80,12 @@ fn cost(text: &str) -> Result<Cost, NoValue> {
 }
 
 pub fn main(args: &Args) -> Result<Exit, Error> {
+    let peers = args.peers.iter().map(|file| table(file, args));
+    let peers = peers.collect::<Result<Vec<_>, _>>()?.concat();
     if let Some(file) = &args.from {
-        let name = file.display().to_string();
-        let text = precision_table::open(file).map_err(Error::usage)?;
-        let charts = precision_table::read(&name, &text, args.cost, args.target);
-        let charts = charts.map_err(|error| {
-            let text = mistaken(&name, &text, FileKind::ChartTable);
-            Error::Usage(text.map_or(error.to_string(), |text| format!("{name}: {text}")))
-        })?;
+        let charts = with_peers(table(file, args)?, &peers)?;
         let outputs = Outputs::open(&args.sweep.out)?;
-        report(charts).write(outputs, args.sweep.out.quiet)?;
+        report(charts, args.error_on_x).write(outputs, args.sweep.out.quiet)?;
         return Ok(Exit::Good);
     }
     if let Some(shard) = args.sweep.part().filter(|_| args.sweep.out.writes()) {
@@ -99,10 +101,11 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         chart.by.clone_from(&args.by);
         match args.reference.as_deref() {
             Some("finest") => chart.truth = Truth::Finest,
+            Some("richardson") => chart.truth = Truth::Richardson,
             Some(file) => chart.truth = Truth::Table(Path::new(file).to_owned()),
             None => {}
         }
-        planned.push(PlannedChart::new(chart)?);
+        planned.push(PlannedChart::new(chart).map_err(refused)?);
     }
     let measure = Measure {
         cost: args.cost,
@@ -115,21 +118,50 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         for planned in &planned {
             let rest = results.split_off(planned.runs());
             let own = std::mem::replace(&mut results, rest);
-            charts.push(Precision::new(planned, own, measure).map_err(|e| match e {
-                PrecisionError::Run(error) => failed(*error),
-                error => Error::usage(error),
-            })?);
+            charts.push(Precision::new(planned, own, measure).map_err(refused)?);
         }
-        Ok(report(charts))
+        Ok(report(with_peers(charts, &peers)?, args.error_on_x))
     })
 }
 
-fn report(charts: Vec<Precision>) -> Report<'static> {
+fn refused(error: PrecisionError) -> Error {
+    match error {
+        PrecisionError::Run(error) => failed(*error),
+        error => Error::usage(error),
+    }
+}
+
+/// The charts of a table.
+fn table(file: &Path, args: &Args) -> Result<Vec<Precision>, Error> {
+    let name = file.display().to_string();
+    let text = precision_table::open(file).map_err(Error::usage)?;
+    let charts = precision_table::read(&name, &text, args.cost, args.target);
+    charts.map_err(|error| {
+        let text = mistaken(&name, &text, FileKind::ChartTable);
+        Error::Usage(text.map_or(error.to_string(), |text| format!("{name}: {text}")))
+    })
+}
+
+/// Adds the runs of other programs to the charts of their scenes.
+fn with_peers(mut charts: Vec<Precision>, peers: &[Precision]) -> Result<Vec<Precision>, Error> {
+    for peer in peers {
+        let Some(chart) = charts.iter_mut().find(|chart| chart.scene == peer.scene) else {
+            let scene = &peer.scene;
+            return Err(usage!(
+                "--peers: no chart of the scene {scene}; each row needs the scene of a chart"
+            ));
+        };
+        chart.add(peer);
+    }
+    Ok(charts)
+}
+
+fn report(charts: Vec<Precision>, error_on_x: bool) -> Report<'static> {
     Report {
         table: precision_table::csv(&charts),
         lines: charts.iter().flat_map(lines).collect(),
         warnings: Vec::new(),
-        picture: Box::new(move || precision_figure::sheet(&charts)),
+        picture: Box::new(move || precision_figure::sheet(&charts, error_on_x)),
     }
 }
 
@@ -139,6 +171,7 @@ fn lines(chart: &Precision) -> Vec<String> {
         "series",
         "run",
         "error",
+        "of forces",
         "time (s)",
         "factorizations",
         "majors",
@@ -169,12 +202,18 @@ fn lines(chart: &Precision) -> Vec<String> {
             point.error.map_or_else(String::new, |error| {
                 format!("{}{round_off}", significant(error, 3))
             }),
+            point
+                .force_error
+                .map_or_else(String::new, |error| significant(error, 3)),
             sig6((point.seconds * 1e5).round() / 1e5),
             point.factorizations.to_string(),
             point.majors.to_string(),
             point.minors.to_string(),
             end,
         ]);
+    }
+    if chart.points.iter().all(|point| point.force_error.is_none()) {
+        table.iter_mut().for_each(|row| drop(row.remove(4)));
     }
     let mut lines = vec![chart.title.clone()];
     lines.extend(aligned(&table, 3));

@@ -134,7 +134,14 @@ fn kind(arg: &clap::Arg) -> Option<Kind> {
         ("PATH=VALUE" | "PATH=A,B,C", _) => Kind::Words(settings),
         ("A,B,C", _) => Kind::Words(|begun| plain(begun, Strategy::NAMES)),
         (
-            "FILE" | "FILE|-" | "FILE|finest" | "SNAPSHOT" | "JOURNAL" | "LOG" | "COMMAND" | "A"
+            "FILE"
+            | "FILE|-"
+            | "FILE|finest|richardson"
+            | "SNAPSHOT"
+            | "JOURNAL"
+            | "LOG"
+            | "COMMAND"
+            | "A"
             | "B",
             _,
         ) => Kind::Files,

@@ -6,6 +6,7 @@
 //!     set: [("history.increment", 0.25)],                     // for all runs
 //!     monitors: ["u_x"],                                      // whose error counts; default: all displacements
 //!     finest: [("refine", 8)],                                // the reference; default: the program's table, else the finest
+//!     loads: [1, 2, 3],                                       // where errors are measured, besides the ends of legs
 //!     series: [
 //!         (name: "mesh", vary: [("refine", [1, 2, 4])]),
 //!         (name: "mesh, 9-node elements", vary: [("refine", [1, 2])], set: [("nodes.beam.per_element", 9)]),
@@ -37,6 +38,8 @@ pub struct Chart {
     pub by: Vec<String>,
     /// Reference for the errors.
     pub truth: Truth,
+    /// Load factors at which errors are measured, besides the corners of the load path; empty for those of the reference.
+    pub loads: Vec<f64>,
     /// The curves in the order of the file.
     pub series: Vec<Series>,
 }
@@ -52,6 +55,8 @@ pub enum Truth {
     Run(Vec<(String, String)>),
     /// The run with the most unknowns and, among these, the most increments.
     Finest,
+    /// The limit of the three finest runs of a series, by Richardson extrapolation.
+    Richardson,
 }
 
 /// Runs drawn as one line: all combinations of the varied settings.
@@ -103,6 +108,8 @@ struct File {
     monitors: Vec<String>,
     #[serde(default, deserialize_with = "pairs")]
     finest: Vec<(String, String)>,
+    #[serde(default)]
+    loads: Vec<f64>,
     series: Vec<Series>,
 }
 
@@ -124,6 +131,7 @@ impl Chart {
                 monitors: Vec::new(),
                 by: Vec::new(),
                 truth: truth(&scene.name),
+                loads: Vec::new(),
                 series: any(),
             },
         };
@@ -157,6 +165,7 @@ impl Chart {
             set: file.set,
             monitors: file.monitors,
             by: Vec::new(),
+            loads: file.loads,
             series: file.series,
         })
     }
@@ -185,5 +194,6 @@ fn any() -> Vec<Series> {
         one("mesh", "refine", &["1", "2", "4"]),
         one("increment", "history.increment", &["1x", "0.5x", "0.25x"]),
         one("T_max", "settings.t_max", &["lagged", "consistent"]),
+        one("tolerance", "settings.tolerance", &["1e-4", "1e-6"]),
     ]
 }

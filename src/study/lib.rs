@@ -27,7 +27,7 @@
 //!
 //! - [`chart_file`]: the file format; [`chart_runs`]: the runs; [`precision`]: the measured chart;
 //!   [`precision_table`]: as a table; [`precision_figure`]: as a picture.
-//! - [`reference`](mod@reference): reference curves; [`measuring`]: measures a chart in the background.
+//! - [`reference`](mod@reference): reference curves; [`richardson`]: the limit of three runs; [`measuring`]: measures a chart in the background.
 //!
 //! This package is independent of the command line.
 
@@ -64,6 +64,7 @@ pub mod read;
 pub mod reason;
 pub mod reference;
 pub mod result;
+pub mod richardson;
 pub mod run;
 pub mod shard;
 pub mod sheet;

@@ -1,9 +1,8 @@
 //! Measures a work-precision chart on a separate thread.
 
 use super::chart_file::Chart;
-use super::chart_runs::{PlannedChart, sweep};
-use super::precision::{self, Cost, Measure, Precision, PrecisionError};
-use super::sweep::RunError;
+use super::chart_runs::{PlannedChart, PrecisionError, sweep};
+use super::precision::{self, Cost, Measure, Precision};
 use super::{Vary, Watch};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -59,11 +58,11 @@ impl ChartMeasurement {
                 target: None,
                 repeats: 1,
             };
-            let planned = Chart::open(&name, &over).and_then(|mut chart| {
+            let chart = Chart::open(&name, &over).map_err(PrecisionError::from);
+            let planned = chart.and_then(|mut chart| {
                 chart.set.extend(set);
                 PlannedChart::new(chart)
             });
-            let planned = planned.map_err(|e| PrecisionError::from(RunError::from(e)));
             let measured = planned.and_then(|planned| {
                 let increments = sweep(std::slice::from_ref(&planned), 1).steps();
                 all.store(increments, Ordering::Relaxed);

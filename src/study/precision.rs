@@ -1,26 +1,28 @@
 //! Work-precision charts: the cost and the error of settings.
 //!
 //! A chart contains series of runs of one scene. The **error** of a run is the largest difference between a
-//! monitor and the reference, relative to the largest value of that monitor in the reference,
-//! at those loads that the reference and all finished runs have in common; a failed run has no error. The
+//! monitor and the reference, relative to the largest value of that monitor in the reference, at fixed loads that
+//! are chosen before the runs ([`PlannedChart`]); a failed run has no error. Contact forces have their own error. The
 //! **cost** of a run is the processor time of its thread, from the built scene to the end of the history (the
 //! median of some repetitions), its factorizations (with condensation one per major iteration, otherwise one
 //! per minor), and its minor iterations. The **front** consists of the finished runs that no other run beats in
 //! both error and cost; differences below 2 % are ties, and errors at round-off ([`ROUND_OFF`]) count as equal.
 
 use super::chart_file::{Chart, Truth};
-use super::chart_runs::{PlannedChart, TimedRun, sweep};
-use super::csv::TableError;
+use super::chart_runs::{PlannedChart, PrecisionError, TimedRun, sweep};
 use super::figure::{assigned, name};
 use super::monitor_kind::{MonitorKind, kind};
 use super::origin;
-use super::reference::{self, Reference};
+use super::reference::{Reference, ReferencePoint};
 use super::result::Run;
+use super::richardson;
 use super::solver_pool::Watch;
 use super::sweep::RunError;
 use std::collections::HashMap;
 use std::num::NonZeroUsize;
 use stickslip_core::model::Model;
+use stickslip_core::words::counted;
+use stickslip_scene::number;
 
 /// Errors below this are round-off: a few thousand times the machine precision.
 pub const ROUND_OFF: f64 = 4096.0 * f64::EPSILON;
@@ -40,6 +42,10 @@ pub struct Precision {
     pub title: String,
     /// The monitors whose errors are measured.
     pub monitors: Vec<String>,
+    /// The contact forces whose errors are measured.
+    pub forces: Vec<String>,
+    /// Error bars of the reference, relative as the errors: of the monitors, and of the forces.
+    pub uncertainty: [Option<f64>; 2],
     /// Origin of the chart, for footers.
     pub about: Vec<String>,
     /// Names of the series.
@@ -63,6 +69,8 @@ pub struct Point {
     pub settings: Vec<(String, String)>,
     /// Median processor time in seconds.
     pub seconds: f64,
+    /// Shortest and longest processor time, if the run was repeated.
+    pub spread: Option<(f64, f64)>,
     /// Number of repetitions.
     pub repeats: usize,
     /// Factorizations of the bodies.
@@ -81,6 +89,8 @@ pub struct Point {
     pub unsettled: usize,
     /// Relative error; `None` if the run failed or is the reference.
     pub error: Option<f64>,
+    /// Relative error of the contact forces, if the reference has them.
+    pub force_error: Option<f64>,
     /// Whether it is the reference.
     pub reference: bool,
     /// Whether it is on the front.
@@ -137,26 +147,6 @@ pub struct Measure {
     pub repeats: usize,
 }
 
-/// Why a chart cannot be made.
-#[derive(Debug, thiserror::Error)]
-pub enum PrecisionError {
-    /// The reference table cannot be read.
-    #[error(transparent)]
-    Table(#[from] TableError),
-    /// There is no reference.
-    #[error("{0}")]
-    Reference(String),
-    /// The runs cannot be computed.
-    #[error(transparent)]
-    Run(Box<RunError>),
-}
-
-impl From<RunError> for PrecisionError {
-    fn from(error: RunError) -> PrecisionError {
-        PrecisionError::Run(Box::new(error))
-    }
-}
-
 /// A run with the data for comparison.
 struct MeasuredRun {
     point: Point,
@@ -188,11 +178,12 @@ fn measured(
 ) -> MeasuredRun {
     let TimedRun {
         seconds,
+        spread,
         repeats,
         run,
     } = timed;
     let failed = run.failed().map(|failed| {
-        let load = stickslip_scene::number::sig6(failed.load);
+        let load = number::sig6(failed.load);
         format!("{} at load {load}", failed.verdict)
     });
     let point = Point {
@@ -200,6 +191,7 @@ fn measured(
         name,
         settings,
         seconds,
+        spread: (repeats > 1).then_some(spread),
         repeats,
         factorizations: run.factorizations,
         majors: run.begun,
@@ -209,6 +201,7 @@ fn measured(
         failed,
         unsettled: run.unsettled(),
         error: None,
+        force_error: None,
         reference: false,
         front: false,
     };
@@ -226,54 +219,89 @@ fn kinds(model: &Model) -> Vec<MonitorKind> {
 
 /// The reference of a chart, and the number of its run if it is one of the runs.
 fn truth(
-    chart: &Chart,
+    planned: &PlannedChart,
     all: &[MeasuredRun],
     run: Option<TimedRun>,
 ) -> Result<(Reference, Option<usize>), PrecisionError> {
-    let path = all.first().map(|m| m.path.clone()).unwrap_or_default();
+    let chart = &planned.chart;
+    let path = all.first().map_or(&[][..], |m| m.path.as_slice());
     let wrong = PrecisionError::Reference;
-    match &chart.truth {
-        Truth::Table(file) => {
-            let table = Reference::open(file, &path)?;
-            Ok((table, None))
+    match (&chart.truth, &planned.table) {
+        (Truth::Table(_) | Truth::Builtin, table) => {
+            let none = || wrong("the reference table was not read".to_owned());
+            Ok((table.clone().ok_or_else(none)?, None))
         }
-        Truth::Builtin => {
-            let name = chart.scene.strip_suffix(".ron").unwrap_or(&chart.scene);
-            let known = Reference::builtin(name, &path);
-            let none = || wrong(format!("there is no built-in reference for {name}"));
-            Ok((known.ok_or_else(none)??, None))
-        }
-        Truth::Run(settings) => {
+        (Truth::Run(settings), _) => {
             let names: Vec<String> = assigned(settings).collect();
             let name = format!("a run with {}", names.join(", "));
             let stopped = "interrupted before the reference was computed";
             let run = run.ok_or_else(|| wrong(stopped.to_owned()))?.run;
             match run.failed() {
-                None => Ok((Reference::from_run(&run, name, &path), None)),
+                None => Ok((Reference::from_run(&run, name, path), None)),
                 Some(failed) => Err(wrong(format!(
                     "the reference, {name}, failed: {}",
                     failed.verdict
                 ))),
             }
         }
-        Truth::Finest => {
-            let whole =
-                |m: &&(usize, &MeasuredRun)| m.1.point.failed.is_none() && m.1.point.unsettled == 0;
-            let rank = |m: &(usize, &MeasuredRun)| {
-                (m.1.point.unknowns, m.1.point.increments, usize::MAX - m.0)
-            };
-            let finest = all
-                .iter()
-                .enumerate()
-                .filter(|m| whole(&m))
-                .max_by_key(rank);
-            let (k, m) = finest
+        (Truth::Finest, _) => {
+            let (k, m) = by_fineness(all)
+                .last()
+                .copied()
                 .ok_or_else(|| wrong("no run finished, so there is no reference".to_owned()))?;
             let series = &chart.series[m.point.series].name;
             let name = format!("the finest run of the set ({series}, {})", m.point.name);
             Ok((Reference::from_run(&m.run, name, &m.path), Some(k)))
         }
+        (Truth::Richardson, _) => {
+            let runs = by_fineness(all);
+            let mut series: Vec<usize> = runs.iter().rev().map(|(_, m)| m.point.series).collect();
+            series.dedup();
+            let found = series.into_iter().find_map(|s| {
+                let own = runs.iter().filter(|(_, m)| m.point.series == s);
+                let own: Vec<&MeasuredRun> = own.map(|(_, m)| *m).collect();
+                let &[a, b, c] = own.last_chunk::<3>()?;
+                Some(([a, b, c], ratio([a, b, c])?))
+            });
+            let none = "Richardson extrapolation needs three finished runs of a series with one varied number that \
+                        changes by a constant ratio, such as --over refine=1,2,4";
+            let (runs, ratio) = found.ok_or_else(|| wrong(none.to_owned()))?;
+            let curves = runs.map(|m| Reference::from_run(&m.run, String::new(), &m.path));
+            let [a, b, c] = &curves;
+            let fixed = |leg, load| planned.counts(path, leg, load);
+            let (mut limit, orders) = richardson::limit([a, b, c], ratio, fixed);
+            let names = limit.monitors.iter().zip(orders);
+            let orders: Vec<String> = names
+                .filter_map(|(name, order)| Some(format!("{name} {}", number::sig2(order?))))
+                .collect();
+            limit.source = format!(
+                "Richardson extrapolation of {} ({}); orders: {}",
+                chart.series[runs[0].point.series].name,
+                runs.map(|m| m.point.name.clone()).join("; "),
+                orders.join(", ")
+            );
+            Ok((limit, None))
+        }
     }
+}
+
+/// The finished runs and their numbers, the finest last: by unknowns and, among equals, by increments. Of equals the first is last.
+fn by_fineness(all: &[MeasuredRun]) -> Vec<(usize, &MeasuredRun)> {
+    let whole = |m: &(usize, &MeasuredRun)| m.1.point.failed.is_none() && m.1.point.unsettled == 0;
+    let mut runs: Vec<_> = all.iter().enumerate().filter(whole).collect();
+    runs.sort_by_key(|(k, m)| (m.point.unknowns, m.point.increments, usize::MAX - k));
+    runs
+}
+
+/// The constant ratio, above 1, of the only setting that three runs vary.
+fn ratio(runs: [&MeasuredRun; 3]) -> Option<f64> {
+    let [a, b, c] = runs.map(|m| {
+        let varied = m.point.name.split_once('=')?.1.trim_end_matches('x');
+        varied.parse::<f64>().ok()
+    });
+    let (first, second) = (b? / a?, c? / b?);
+    let constant = (first - second).abs() <= 1e-9 * first.abs() && first > 0.0 && first != 1.0;
+    constant.then(|| first.max(1.0 / first))
 }
 
 /// Measures all errors; returns the number of loads compared.
@@ -281,7 +309,7 @@ fn compare(
     precision: &mut Precision,
     all: &mut [MeasuredRun],
     reference: &Reference,
-    wanted: &[String],
+    planned: &PlannedChart,
 ) -> Result<usize, PrecisionError> {
     let Some(first) = all.first() else {
         return Ok(0);
@@ -290,7 +318,11 @@ fn compare(
     let kinds = first.run.monitors.iter().cloned().zip(first.kinds.clone());
     let kinds: HashMap<String, MonitorKind> = kinds.collect();
     let kind = |name: &String| kinds.get(name).copied();
-    let counts = |name: &&String| match wanted {
+    let wanted = match planned.chart.by.is_empty() {
+        true => &planned.chart.monitors,
+        false => &planned.chart.by,
+    };
+    let counts = |name: &&String| match wanted.as_slice() {
         [] => kind(name) == Some(MonitorKind::Length),
         some => some.contains(name) && kind(name).is_some(),
     };
@@ -305,52 +337,73 @@ fn compare(
         .iter()
         .map(|m| m.point.failed.is_none().then(|| curve(m)))
         .collect();
-    let common = |row: &&reference::ReferencePoint| {
-        let mut whole = curves.iter().flatten();
-        whole.all(|curve| curve.at(row.leg, row.load).is_some())
-    };
-    let rows: Vec<_> = reference.rows.iter().filter(common).collect();
+    let fixed = |row: &&ReferencePoint| planned.counts(&first.path, row.leg, row.load);
+    let rows: Vec<_> = reference.rows.iter().filter(fixed).collect();
     if rows.is_empty() {
         return Err(PrecisionError::Reference(
-            "the reference and the runs have no load in common".to_owned(),
+            "the reference has none of the fixed loads at which errors are measured".to_owned(),
         ));
     }
-    let columns: Vec<(usize, &String)> = precision
-        .monitors
-        .iter()
-        .filter_map(|name| Some((reference.monitors.iter().position(|own| own == name)?, name)))
-        .collect();
     let largest = |k: usize| {
         let values = reference.rows.iter().map(|row| row.values[k].abs());
         values.fold(f64::MIN_POSITIVE, f64::max)
     };
-    // Where a monitor is only round-off, its largest value is no scale: the largest of its kind is used.
-    let scale = |k: usize, name: &String| {
-        let of_kind = columns.iter().filter(|(_, own)| kind(own) == kind(name));
-        let most = of_kind.map(|(k, _)| largest(*k)).fold(0.0, f64::max);
-        largest(k).max(FLAT * most)
+    // Contact forces have their own panel, unless the monitors were requested by name.
+    let force = |(k, name): &(usize, &String)| {
+        let is_zero = largest(*k) <= f64::MIN_POSITIVE;
+        kind(name) == Some(MonitorKind::Force) && !is_zero && !precision.monitors.contains(name)
     };
-    for (measured, curve) in all.iter_mut().zip(&curves) {
-        let Some(curve) = curve.as_ref().filter(|_| !measured.point.reference) else {
+    let columns = || reference.monitors.iter().enumerate();
+    let forces: Vec<(usize, &String)> = match planned.chart.by.is_empty() {
+        true => columns().filter(force).collect(),
+        false => Vec::new(),
+    };
+    let own = |(_, name): &(usize, &String)| precision.monitors.contains(name);
+    let own: Vec<(usize, &String)> = columns().filter(own).collect();
+    precision.forces = forces.iter().map(|(_, name)| (*name).clone()).collect();
+    for (is_force, columns) in [(false, own), (true, forces)] {
+        if columns.is_empty() {
             continue;
+        }
+        // Where a monitor is only round-off, its largest value is no scale: the largest of its kind is used.
+        let scale = |k: usize, name: &String| {
+            let of_kind = columns.iter().filter(|(_, own)| kind(own) == kind(name));
+            let most = of_kind.map(|(k, _)| largest(*k)).fold(0.0, f64::max);
+            largest(k).max(FLAT * most)
         };
-        let mut error = 0.0_f64;
-        for row in &rows {
-            let Some(own) = curve.at(row.leg, row.load) else {
-                continue;
-            };
-            for (k, name) in &columns {
-                let place = curve.monitors.iter().position(|own| own == *name);
-                let value = place.map_or(f64::NAN, |place| own.values[place]);
-                let part = (value - row.values[*k]).abs() / scale(*k, name);
-                error = if part.is_nan() {
+        // The largest of all fixed loads and monitors; a number that is missing counts as infinite.
+        let worst = |part: &dyn Fn(&ReferencePoint, usize, &String) -> Option<f64>| {
+            let parts = rows.iter().flat_map(|row| {
+                let part = move |(k, name): &(usize, &String)| part(row, *k, name);
+                columns.iter().map(part).zip(&columns)
+            });
+            parts.fold(0.0_f64, |most, (part, (k, name))| {
+                let part = part.map_or(f64::NAN, |part| part / scale(*k, name));
+                if part.is_nan() {
                     f64::INFINITY
                 } else {
-                    error.max(part)
-                };
+                    most.max(part)
+                }
+            })
+        };
+        if rows.iter().all(|row| !row.bars.is_empty()) {
+            let bar = worst(&|row, k, _| row.bars.get(k).copied());
+            precision.uncertainty[usize::from(is_force)] = Some(bar);
+        }
+        for (measured, curve) in all.iter_mut().zip(&curves) {
+            let Some(curve) = curve.as_ref().filter(|_| !measured.point.reference) else {
+                continue;
+            };
+            let error = worst(&|row, k, name| {
+                let place = curve.monitors.iter().position(|own| own == name)?;
+                let value = curve.at(row.leg, row.load)?.values[place];
+                Some((value - row.values[k]).abs())
+            });
+            match is_force {
+                true => measured.point.force_error = Some(error),
+                false => measured.point.error = Some(error),
             }
         }
-        measured.point.error = Some(error);
     }
     Ok(rows.len())
 }
@@ -417,12 +470,14 @@ impl Precision {
                 all.push(measured(timed, &model, s, name(plan, k), settings));
             }
         }
-        let (reference, own) = truth(chart, &all, results.next().flatten())?;
+        let (reference, own) = truth(planned, &all, results.next().flatten())?;
         let series = chart.series.iter().map(|series| series.name.clone());
         let mut precision = Precision {
             scene: chart.scene.clone(),
             title: chart.title.clone(),
             monitors: Vec::new(),
+            forces: Vec::new(),
+            uncertainty: [None; 2],
             about: Vec::new(),
             series: series.collect(),
             points: Vec::new(),
@@ -432,16 +487,25 @@ impl Precision {
         if let Some(own) = own {
             all[own].point.reference = true;
         }
-        let wanted = match chart.by.is_empty() {
-            true => &chart.monitors,
-            false => &chart.by,
-        };
         measurable(&reference, &chart.by)?;
-        let loads = compare(&mut precision, &mut all, &reference, wanted)?;
+        let loads = compare(&mut precision, &mut all, &reference, planned)?;
         precision.points = all.into_iter().map(|measured| measured.point).collect();
         precision.about = origin(chart, &precision, loads, &reference);
         mark_front(&mut precision.points, measure.cost);
         Ok(precision)
+    }
+
+    /// Adds the runs of another chart of the same scene as further series, except those without the cost of this one.
+    pub fn add(&mut self, other: &Precision) {
+        let before = self.series.len();
+        self.series.extend(other.series.iter().cloned());
+        let runs = other.points.iter().filter(|p| self.cost.of(p) > 0.0);
+        self.points.extend(runs.cloned().map(|point| Point {
+            series: before + point.series,
+            ..point
+        }));
+        self.about.extend(other.about.iter().cloned());
+        mark_front(&mut self.points, self.cost);
     }
 
     /// The cheapest run with at most the target error.
@@ -459,11 +523,8 @@ impl Precision {
         let target = self.target?;
         let meets = |point: &Point| {
             let series = &self.series[point.series];
-            let cost = stickslip_scene::number::sig6(self.cost.of(point));
-            let error = point
-                .error
-                .map(stickslip_scene::number::sig6)
-                .unwrap_or_default();
+            let cost = number::sig6(self.cost.of(point));
+            let error = point.error.map(number::sig6).unwrap_or_default();
             format!(
                 "The cheapest run with an error of at most {target:?}: {series}, {}: error {error}, {} {cost}.",
                 point.name,
@@ -486,11 +547,25 @@ fn origin(
         .map(|pair| format!("; {pair}"))
         .collect();
     let repeats = precision.points.iter().map(|point| point.repeats).max();
+    let forces = match precision.forces.join(", ") {
+        none if none.is_empty() => none,
+        forces => format!(" (separately of {forces})"),
+    };
+    let bars = precision
+        .uncertainty
+        .iter()
+        .flatten()
+        .map(|bar| number::sig2(*bar));
+    let bar = match bars.collect::<Vec<_>>().join(", forces ") {
+        none if none.is_empty() => none,
+        bars => format!("; its error bar: {bars}"),
+    };
     vec![
         format!("Scene: {}{set}", chart.scene),
         format!(
-            "Error: largest difference of {}, each relative to its largest value, at {loads} loads common to all finished runs; reference: {}",
+            "Error: largest difference of {}{forces}, each relative to its largest value, at {}, where every run ends an increment; reference: {}{bar}",
             precision.monitors.join(", "),
+            counted(loads, "fixed load"),
             reference.source
         ),
         format!(
@@ -512,6 +587,7 @@ mod tests {
             name: String::new(),
             settings: Vec::new(),
             seconds,
+            spread: None,
             repeats: 1,
             factorizations: 1,
             majors: 1,
@@ -521,6 +597,7 @@ mod tests {
             failed: error.is_none().then(|| "failed".to_owned()),
             unsettled: 0,
             error,
+            force_error: None,
             reference: false,
             front: false,
         }
@@ -541,6 +618,39 @@ mod tests {
         mark_front(&mut points, Cost::Time);
         let front: Vec<bool> = points.iter().map(|p| p.front).collect();
         assert_eq!(front, [true, true, false, true, false, true, true, false]);
+    }
+
+    #[test]
+    fn peers_are_further_series_and_change_the_front() {
+        let mut chart = Precision {
+            scene: String::new(),
+            title: String::new(),
+            monitors: Vec::new(),
+            forces: Vec::new(),
+            uncertainty: [None; 2],
+            about: Vec::new(),
+            series: vec!["own".to_owned()],
+            points: vec![point(2.0, Some(1e-3))],
+            cost: Cost::Time,
+            target: None,
+        };
+        let peer = Precision {
+            series: vec!["peer".to_owned()],
+            points: vec![point(1.0, Some(1e-4)), point(0.0, Some(1e-9))],
+            about: vec!["a peer".to_owned()],
+            ..chart.clone()
+        };
+        chart.add(&peer);
+        let rows: Vec<_> = chart.points.iter().map(|p| (p.series, p.front)).collect();
+        // The one without a time has no place on the axis.
+        assert_eq!(rows, [(0, false), (1, true)]);
+        assert_eq!(
+            (chart.series, chart.about),
+            (
+                vec!["own".to_owned(), "peer".to_owned()],
+                vec!["a peer".to_owned()]
+            )
+        );
     }
 
     #[test]

@@ -85,6 +85,8 @@ pub fn read(
                 scene: scene.to_owned(),
                 title: scene.to_owned(),
                 monitors: Vec::new(),
+                forces: Vec::new(),
+                uncertainty: [None; 2],
                 about: Vec::new(),
                 series: Vec::new(),
                 points: Vec::new(),
@@ -100,12 +102,19 @@ pub fn read(
             chart.series.push(own.to_owned());
             chart.series.len() - 1
         });
+        for (head, bar) in ["uncertainty", "force_uncertainty"]
+            .iter()
+            .zip(&mut chart.uncertainty)
+        {
+            *bar = number(head)?.or(*bar);
+        }
         let status = word("status");
         chart.points.push(Point {
             series,
             name: word("run").to_owned(),
             settings: Vec::new(),
             seconds: number("seconds")?.unwrap_or(0.0),
+            spread: number("fastest")?.zip(number("slowest")?),
             repeats: count("repeats")? as usize,
             factorizations: count("factorizations")?,
             majors: count("majors")?,
@@ -115,6 +124,7 @@ pub fn read(
             failed: (!["whole", "reference"].contains(&status)).then(|| status.to_owned()),
             unsettled: count("unsettled")? as usize,
             error: number("error")?,
+            force_error: number("force_error")?,
             reference: status == "reference",
             front: false,
         });
@@ -133,7 +143,8 @@ pub fn read(
 pub fn csv(charts: &[Precision]) -> String {
     let mut text = super::csv::comments(charts.iter().flat_map(|chart| &chart.about));
     text += "scene,series,run,settings,status,error,seconds,repeats,factorizations,majors,minors,increments,unknowns,\
-             unsettled,front\n";
+             unsettled,front,force_error,fastest,slowest,uncertainty,force_uncertainty\n";
+    let cell = |value: Option<f64>| value.map_or_else(String::new, |value| format!("{value:?}"));
     for (chart, point) in charts
         .iter()
         .flat_map(|c| c.points.iter().map(move |p| (c, p)))
@@ -155,11 +166,9 @@ pub fn csv(charts: &[Precision]) -> String {
         // Writing to a string does not fail.
         let _ = writeln!(
             text,
-            "{},{},{:?},{},{},{},{},{},{},{},{}",
+            "{},{},{:?},{},{},{},{},{},{},{},{},{},{},{},{},{}",
             words.join(","),
-            point
-                .error
-                .map_or_else(String::new, |error| format!("{error:?}")),
+            cell(point.error),
             point.seconds,
             point.repeats,
             point.factorizations,
@@ -168,7 +177,12 @@ pub fn csv(charts: &[Precision]) -> String {
             point.increments,
             point.unknowns,
             point.unsettled,
-            point.front
+            point.front,
+            cell(point.force_error),
+            cell(point.spread.map(|(fastest, _)| fastest)),
+            cell(point.spread.map(|(_, slowest)| slowest)),
+            cell(chart.uncertainty[0]),
+            cell(chart.uncertainty[1])
         );
     }
     text

@@ -35,6 +35,8 @@ pub struct ReferencePoint {
     pub load: f64,
     /// One value per column.
     pub values: Vec<f64>,
+    /// Error bar of each value; empty if it is unknown.
+    pub bars: Vec<f64>,
 }
 
 /// The built-in references, by scene.
@@ -115,6 +117,7 @@ impl Reference {
                 leg,
                 load: at,
                 values,
+                bars: Vec::new(),
             });
         }
         if rows.is_empty() {
@@ -134,6 +137,7 @@ impl Reference {
             leg: legs.of(row.load),
             load: row.load,
             values: row.monitors.clone(),
+            bars: Vec::new(),
         };
         Reference {
             source,

@@ -3,7 +3,7 @@
 use std::path::Path;
 use stickslip_study::csv::TableError;
 use stickslip_study::measuring::NotMeasured;
-use stickslip_study::precision::{Cost, Precision};
+use stickslip_study::precision::{Cost, Point, Precision};
 use stickslip_study::precision_table;
 
 /// Why a chart cannot be shown.
@@ -32,6 +32,8 @@ pub struct ChartPage {
     pub(super) chart: usize,
     pub(super) run: usize,
     pub(super) cost: Cost,
+    /// Whether the errors of the contact forces are shown.
+    pub(super) is_force: bool,
 }
 
 impl ChartPage {
@@ -64,6 +66,7 @@ impl ChartPage {
             chart: 0,
             run: 0,
             cost,
+            is_force: false,
         })
     }
 
@@ -77,6 +80,7 @@ impl ChartPage {
             }
             "Tab" => (self.chart, self.run) = ((self.chart + 1) % charts, 0),
             "x" => self.turn_cost(),
+            "f" => self.is_force = !self.is_force && self.has_forces(),
             _ => return false,
         }
         true
@@ -85,6 +89,20 @@ impl ChartPage {
     /// The shown chart.
     pub(super) fn shown(&self) -> &Precision {
         &self.charts[self.chart]
+    }
+
+    /// Whether any run of the shown chart has an error of the contact forces.
+    fn has_forces(&self) -> bool {
+        let mut points = self.shown().points.iter();
+        points.any(|point| point.force_error.is_some())
+    }
+
+    /// The shown error of a run.
+    pub(super) fn error(&self, point: &Point) -> Option<f64> {
+        match self.is_force && self.has_forces() {
+            true => point.force_error,
+            false => point.error,
+        }
     }
 
     /// Switches to the next kind of cost, which changes the Pareto front.

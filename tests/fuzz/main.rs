@@ -425,7 +425,7 @@ fn chart_tables() {
         let same = precision_table::read("y.csv", &again, precision::Cost::Minors, None);
         assert_eq!(same.ok().map(|c| c.len()), Some(charts.len()), "{again}");
         if charts.iter().map(|chart| chart.points.len()).sum::<usize>() < 12 {
-            let svg = precision_figure::sheet(&charts).and_then(|sheet| sheet.svg());
+            let svg = precision_figure::sheet(&charts, false).and_then(|sheet| sheet.svg());
             assert!(
                 svg.is_ok_and(|svg| !svg.contains(|c| shown::is_order(c) && !"\n\r\t".contains(c)))
             );

@@ -158,6 +158,7 @@ fn keys(app: &App, view: Option<&View>, places: &ScreenAreas) -> paint::Lines {
             &[
                 ("←→", "run"),
                 ("x", "cost"),
+                ("f", "forces"),
                 ("Tab", "next chart"),
                 ("Esc", "back"),
             ],

@@ -88,7 +88,7 @@ fn plot_runs(buffer: &mut Buffer, plot: Rect, page: &ChartPage, theme: &Theme) {
         chart
             .points
             .iter()
-            .filter_map(|p| Some(p.error?.max(ROUND_OFF))),
+            .filter_map(|p| Some(page.error(p)?.max(ROUND_OFF))),
     );
     let column = |value: f64| plot.x + (x.part(value) * f64::from(plot.width - 1)).round() as u16;
     let row = |error: f64| {
@@ -121,7 +121,12 @@ fn plot_runs(buffer: &mut Buffer, plot: Rect, page: &ChartPage, theme: &Theme) {
     let solved = |wanted: &dyn Fn(&Point) -> bool| {
         let points = chart.points.iter().filter(|point| wanted(point));
         let mut at: Vec<(f64, [f64; 2])> = points
-            .filter_map(|point| Some((cost(point), dot(column(cost(point)), row(point.error?)))))
+            .filter_map(|point| {
+                Some((
+                    cost(point),
+                    dot(column(cost(point)), row(page.error(point)?)),
+                ))
+            })
             .collect();
         at.sort_by(|a, b| a.0.total_cmp(&b.0));
         at.into_iter().map(|(_, dot)| dot).collect::<Vec<_>>()
@@ -129,7 +134,7 @@ fn plot_runs(buffer: &mut Buffer, plot: Rect, page: &ChartPage, theme: &Theme) {
     for k in 0..chart.series.len() {
         canvas.polyline(&solved(&|point| point.series == k), theme.faint);
     }
-    canvas.polyline(&solved(&|point| point.front), theme.good);
+    canvas.polyline(&solved(&|point| point.front && !page.is_force), theme.good);
     canvas.render(buffer);
     let mut put = |x: u16, y: u16, text: &str, style: Style| {
         buffer.set_string(x, y, text, style);
@@ -139,7 +144,7 @@ fn plot_runs(buffer: &mut Buffer, plot: Rect, page: &ChartPage, theme: &Theme) {
     }
     let mut selected = None;
     for (k, point) in chart.points.iter().enumerate() {
-        let (style, text, at) = match (point.error, &point.failed) {
+        let (style, text, at) = match (page.error(point), &point.failed) {
             (Some(error), _) => {
                 let style = if point.front { theme.good } else { theme.text };
                 (
@@ -186,7 +191,12 @@ fn series(chart: &Precision, theme: &Theme, width: usize) -> paint::Lines {
 /// Details of the selected run, and the source of the chart.
 fn details(page: &ChartPage, theme: &Theme, width: usize) -> paint::Lines {
     let chart = page.shown();
-    let axis = format!(" error over {}", page.cost.axis());
+    let forces = if page.is_force {
+        " of contact forces"
+    } else {
+        ""
+    };
+    let axis = format!(" error{forces} over {}", page.cost.axis());
     let Some(point) = chart.points.get(page.run) else {
         return vec![Line::styled(axis, theme.faint)];
     };
@@ -196,8 +206,8 @@ fn details(page: &ChartPage, theme: &Theme, width: usize) -> paint::Lines {
         chart.series[point.series],
         point.name
     );
-    let error = match (point.error, &point.failed) {
-        (Some(error), _) if point.is_round_off() => {
+    let error = match (page.error(point), &point.failed) {
+        (Some(error), _) if error < ROUND_OFF => {
             format!("error {} (round-off)", number::sig4(error))
         }
         (Some(error), _) => format!("error {}", number::sig4(error)),
@@ -274,6 +284,8 @@ mod tests {
         assert!(shown.contains("error over minor iterations"), "{shown}");
         page.run = 0;
         assert!(text(&page, 100, 24).contains("▸ a mesh, refine=1"));
+        // No run has an error of the contact forces.
+        assert!(page.key("f") && !text(&page, 100, 24).contains("contact forces"));
         assert!(page.key("Tab"));
         assert!(text(&page, 100, 24).contains("two  2/2"));
         assert!(!page.key("s"));
