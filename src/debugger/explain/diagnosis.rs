@@ -691,9 +691,11 @@ fn way_words(way: FrozenChange, settles: bool) -> String {
     };
     match way {
         FrozenChange::Answer(k) => {
-            format!("tried: starting from consistent state {}: {ends}", k + 1)
+            format!("tried: :start-from {}: {ends}", k + 1)
         }
-        FrozenChange::ConsistentLimit => format!("tried: settings.t_max=consistent: {ends}"),
+        FrozenChange::ConsistentLimit => {
+            format!("tried: :set settings.t_max consistent: {ends}")
+        }
         FrozenChange::OtherSlip => format!("tried: settings.slip set to its other value: {ends}"),
     }
 }
