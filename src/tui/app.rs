@@ -135,6 +135,8 @@ pub struct App {
     pub finds_colours: bool,
     /// Whether mouse support is on.
     pub mouse: bool,
+    /// Whether pictures consist of octants instead of braille.
+    pub octants: bool,
     /// The area of the last draw.
     pub area: Rect,
     /// The page or prompt over the panes.
@@ -211,6 +213,7 @@ impl App {
             colours: Colours::default(),
             finds_colours: false,
             mouse: true,
+            octants: false,
             area: Rect::new(0, 0, 80, 24),
             overlay: Overlay::None,
             panes: ShownPanes::default(),

@@ -3,6 +3,7 @@
 //! The canvas of ratatui supports only colours; this one stores full styles, so that dim lines stay dim without colour. The last
 //! drawing operation in a cell sets its style.
 
+use ratatui::symbols::pixel::OCTANTS;
 use ratatui::{buffer::Buffer, layout::Rect, style::Style};
 use stickslip_debugger::explain::outline::{clip, mix};
 
@@ -98,6 +99,28 @@ impl Canvas {
     }
 }
 
+/// Replaces braille by the octants of Unicode 16, which have the same dots without gaps.
+pub fn use_octants(buffer: &mut Buffer) {
+    for cell in &mut buffer.content {
+        let sign = cell.symbol().chars().next().map_or(0, u32::from);
+        let Some(bits) = sign.checked_sub(0x2800).filter(|bits| *bits < 256) else {
+            continue;
+        };
+        let rows = BITS.as_flattened().iter().enumerate();
+        let set = rows.filter(|(_, bit)| bits & u32::from(**bit) != 0);
+        let place: usize = set.map(|(k, _)| 1 << k).sum();
+        cell.set_char(OCTANTS[place]);
+    }
+}
+
+/// Whether the environment names a terminal that draws octants: Ghostty from version 1.2 on.
+pub fn has_octants(variable: impl Fn(&str) -> Option<String>) -> bool {
+    let version = variable("TERM_PROGRAM_VERSION").unwrap_or_default();
+    let mut parts = version.split('.').map(|part| part.parse::<u32>().ok());
+    let version = (parts.next().flatten(), parts.next().flatten());
+    variable("TERM_PROGRAM").as_deref() == Some("ghostty") && version >= (Some(1), Some(2))
+}
+
 /// Bits of the braille dots in Unicode, by row and column.
 const BITS: [[u8; 2]; 4] = [[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]];
 
@@ -122,6 +145,27 @@ mod tests {
     fn lines_are_cut_at_the_border() {
         assert_eq!(drawn(&[([-100.0, 1.0], [100.0, 1.0])]), ["⠒⠒⠒⠒", "    "]);
         assert_eq!(drawn(&[([0.0, -1e9], [0.0, 1e9])]), ["⡇   ", "⡇   "]);
+    }
+
+    #[test]
+    fn octants_have_the_dots_of_braille_and_other_signs_stay() {
+        let mut buffer = Buffer::with_lines(["⠁⠈⡇⢸⠉⣀⣿a "]);
+        use_octants(&mut buffer);
+        let signs: String = buffer.content.iter().map(|cell| cell.symbol()).collect();
+        assert_eq!(signs, "𜺨𜺫▌▐🮂▂█a ");
+    }
+
+    #[test]
+    fn only_a_terminal_known_to_draw_octants_has_them() {
+        let on = |program: &'static str, version: &'static str| {
+            has_octants(move |name| match name {
+                "TERM_PROGRAM" => Some(program.to_owned()),
+                _ => Some(version.to_owned()),
+            })
+        };
+        assert!(on("ghostty", "1.2.0") && on("ghostty", "2.0"));
+        assert!(!on("ghostty", "1.1.3") && !on("ghostty", "") && !on("tmux", "3.5"));
+        assert!(!has_octants(|_| None));
     }
 
     #[test]

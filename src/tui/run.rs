@@ -2,6 +2,7 @@
 
 use crate::app::App;
 use crate::background::{self, Reply};
+use crate::canvas;
 use crate::debugger::{Debugger, TerminalRequest, offers};
 use crate::terminal::{self, Terminal};
 use crate::theme::{Theme, wants_no_colour};
@@ -9,7 +10,7 @@ use crossterm::event::{self, Event};
 use std::io::{self, IsTerminal, Write};
 use std::time::{Duration, Instant};
 use stickslip_debugger::action::Colours;
-use stickslip_debugger::action::config::Config;
+use stickslip_debugger::action::config::{Config, Dots};
 use stickslip_debugger::record::journal::{JournalError, JournalTarget};
 use stickslip_debugger::session::Session;
 use stickslip_debugger::teach::Lesson;
@@ -110,6 +111,10 @@ fn configured(config: Config, session: Option<Session>) -> Debugger {
     let mut debugger = Debugger::new(Theme::chosen(colours), offers(), session);
     let app = &mut debugger.app;
     (app.keymap, app.colours, app.mouse) = (config.keymap, colours, config.mouse);
+    app.octants = match config.dots {
+        Dots::Auto => canvas::has_octants(|name| std::env::var(name).ok()),
+        dots => dots == Dots::Octants,
+    };
     app.finds_colours = chosen.is_none() && !wants_no_colour();
     debugger
 }

@@ -1,6 +1,7 @@
 //! Draws the whole screen.
 
 use crate::app::{App, Overlay};
+use crate::canvas;
 use crate::chooser_state::Preview;
 use crate::layout::{self, Choice, Pane, ScreenAreas};
 use crate::panes::chooser;
@@ -68,6 +69,9 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: Option<&View>) {
     status::draw(buffer, &places, app, view);
     footer::draw(buffer, &places, app, view);
     harmless(buffer, area);
+    if app.octants {
+        canvas::use_octants(buffer);
+    }
 }
 
 /// The layout for a screen of this size.

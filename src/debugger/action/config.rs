@@ -6,6 +6,7 @@
 //! (
 //!     colours: light,     // auto (default: as the background), dark, light, high_contrast, none; NO_COLOR wins
 //!     mouse: false,       // default: true
+//!     dots: octants,      // auto (default: as the terminal), braille, octants
 //! )
 //! ```
 
@@ -32,6 +33,21 @@ pub struct Config {
     pub colours: Option<Colours>,
     /// Whether mouse support is on.
     pub mouse: bool,
+    /// Signs of pictures.
+    pub dots: Dots,
+}
+
+/// The signs of which pictures consist, both two dots wide and four high.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Dots {
+    /// Octants where the terminal is known to draw them, braille elsewhere.
+    #[default]
+    Auto,
+    /// Braille, which every terminal has.
+    Braille,
+    /// Octants of Unicode 16, which leave no gaps.
+    Octants,
 }
 
 impl Default for Config {
@@ -40,6 +56,7 @@ impl Default for Config {
             keymap: Keymap::default(),
             colours: None,
             mouse: true,
+            dots: Dots::Auto,
         }
     }
 }
@@ -51,6 +68,8 @@ struct ConfigFile {
     colours: ConfigColours,
     #[serde(default = "on")]
     mouse: bool,
+    #[serde(default)]
+    dots: Dots,
 }
 
 #[derive(Deserialize, Default)]
@@ -91,7 +110,7 @@ impl Config {
         let mut config = Config::default();
         if let Some((file, text)) = text(&folder.join(DEBUGGER))? {
             let written: ConfigFile = read::value(&file, &text, "configuration")?;
-            config.mouse = written.mouse;
+            (config.mouse, config.dots) = (written.mouse, written.dots);
             config.colours = match written.colours {
                 ConfigColours::Auto => None,
                 ConfigColours::Dark => Some(Colours::Dark),
@@ -131,14 +150,14 @@ mod tests {
         assert_eq!(config(), Ok(Config::default()));
         std::fs::write(
             folder.path().join(DEBUGGER),
-            "(colours: high_contrast, mouse: false)",
+            "(colours: high_contrast, mouse: false, dots: octants)",
         )
         .unwrap();
         std::fs::write(folder.path().join(KEYS), "{\"copy\": [\"x\"]}").unwrap();
         let config = config().unwrap();
         assert_eq!(
-            (config.colours, config.mouse),
-            (Some(Colours::HighContrast), false)
+            (config.colours, config.mouse, config.dots),
+            (Some(Colours::HighContrast), false, Dots::Octants)
         );
         assert_eq!(config.keymap.by_key("x").map(|e| e.name), Some("copy"));
     }

@@ -689,11 +689,10 @@ fn way_words(way: FrozenChange, settles: bool) -> String {
         true => "settles",
         false => "does not settle",
     };
-    match way {
-        FrozenChange::Answer(k) => {
-            format!("tried: starting from consistent state {}: {ends}", k + 1)
-        }
-        FrozenChange::ConsistentLimit => format!("tried: settings.t_max=consistent: {ends}"),
-        FrozenChange::OtherSlip => format!("tried: settings.slip set to its other value: {ends}"),
-    }
+    let what = match way {
+        FrozenChange::Answer(k) => format!(":start-from {}", k + 1),
+        FrozenChange::ConsistentLimit => ":set settings.t_max consistent".to_owned(),
+        FrozenChange::OtherSlip => "settings.slip set to its other value".to_owned(),
+    };
+    format!("tried: {what}: {ends}")
 }

@@ -7,6 +7,9 @@ use super::reader::{MeshKind, Reader};
 use super::source::{DeckLocation, Done, plain};
 use crate::bail;
 
+/// Maximum number of nodes of a printed set that become monitors.
+const PRINTED: usize = 20;
+
 impl Reader {
     /// Rejects a deck without steps or with an unfinished step.
     pub(super) fn finish(&self, last: DeckLocation) -> Done {
@@ -140,7 +143,13 @@ impl Reader {
         };
         let set = self.set_of(name, card.place_of("NSET"), MeshKind::Nodes)?;
         let wanted = card.cells().any(|cell| plain(cell.text) == "U");
-        if wanted && !self.deck.printed.contains(&set) {
+        let is_large = self.deck.node_sets[set].members.len() > PRINTED;
+        if wanted && is_large {
+            self.deck.add_note(
+                card.place_of("NSET"),
+                "U of a set of more than 20 nodes does not become monitors; name fewer nodes",
+            );
+        } else if wanted && !self.deck.printed.contains(&set) {
             self.deck.printed.push(set);
         }
         Ok(())

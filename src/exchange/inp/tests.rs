@@ -332,6 +332,18 @@ fn ignored_and_reinterpreted_input_is_listed_with_its_line() {
     ] {
         assert!(found.contains(part), "{found}");
     }
+    let all: String = (900..921).map(|k| format!("{k}, 9., 9.\n")).collect();
+    let wide = but(
+        BLOCK,
+        "*ELEMENT",
+        &format!("*NODE, NSET=ALL\n{all}*ELEMENT"),
+    );
+    let wide = deck(&but(
+        &wide,
+        "*END STEP",
+        "*NODE PRINT, NSET=ALL\nU\n*END STEP",
+    ));
+    assert!(lines(&wide).join("\n").contains("more than 20 nodes") && wide.printed.is_empty());
     let twice = but(
         BLOCK,
         "*BOUNDARY\nGROUND, 1, 2",

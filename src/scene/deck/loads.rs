@@ -11,9 +11,6 @@ use stickslip_core::model::{Axis, Component};
 use stickslip_exchange::inp::DeckLocation;
 use stickslip_exchange::inp::deck::{Direction, Family, Step, Value, Volume};
 
-/// Maximum number of nodes in a printed set for which displacement monitors are created.
-const PRINTED: usize = 20;
-
 /// The values on a target, step by step, and their first location.
 struct Course {
     place: DeckLocation,
@@ -548,10 +545,8 @@ impl DeckObjects<'_> {
         let deck = self.deck;
         let mut nodes: Vec<usize> = Vec::new();
         for &set in &deck.printed {
-            let members = &deck.node_sets[set].members;
-            if members.len() <= PRINTED {
-                nodes.extend(members.iter().filter(|&&node| self.used[node]));
-            }
+            let members = deck.node_sets[set].members.iter();
+            nodes.extend(members.filter(|&&node| self.used[node]));
         }
         nodes.sort_unstable();
         nodes.dedup();
