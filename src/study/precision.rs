@@ -28,7 +28,7 @@ use stickslip_scene::number;
 pub const ROUND_OFF: f64 = 4096.0 * f64::EPSILON;
 
 /// Costs and errors that differ by less than this part are ties.
-const TIE: f64 = 0.02;
+pub(super) const TIE: f64 = 0.02;
 
 /// A monitor that stays below this part of another of its kind is measured by the other's scale.
 const FLAT: f64 = 1e-6;

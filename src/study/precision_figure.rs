@@ -8,7 +8,7 @@
 use super::drawn::PlotError;
 use super::log_axis::{LogAxis, written};
 use super::placing::{OccupiedArea, Patch};
-use super::precision::{Cost, Point, Precision, ROUND_OFF};
+use super::precision::{Cost, Point, Precision, ROUND_OFF, TIE};
 use super::sheet::{Anchor, Axes, BLACK, CROSS, ENTRY, GREY, LABEL, MARGIN, SMALL, Sheet, widest};
 use stickslip_scene::number::sig2;
 
@@ -274,7 +274,8 @@ impl Panel<'_> {
             let own = own.filter_map(|p| Some((chart.cost.of(p), self.error_of(p)?)));
             let mut own: Vec<(f64, f64)> = own.filter(|p| p.0 > 0.0 && p.1 > ROUND_OFF).collect();
             own.sort_by(|a, b| a.0.total_cmp(&b.0));
-            let falls = |pair: &[(f64, f64)]| pair[1].0 > pair[0].0 && pair[1].1 < pair[0].1;
+            let falls =
+                |pair: &[(f64, f64)]| pair[1].0 > pair[0].0 && (1.0 + TIE) * pair[1].1 < pair[0].1;
             let &[before, last] = own.last_chunk::<2>().filter(|_| own.len() > 2)?;
             own.windows(2).all(falls).then_some((k, before, last))
         });
