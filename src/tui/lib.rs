@@ -19,6 +19,7 @@ pub mod chooser_state;
 pub mod columns;
 pub mod commandline;
 pub mod convergence;
+mod copied;
 mod copying;
 pub mod debugger;
 pub mod event;
@@ -34,6 +35,7 @@ pub mod main_screens;
 mod mouse;
 mod order;
 pub mod paint;
+mod pane_entry;
 pub mod panes;
 mod prompts;
 #[cfg(feature = "terminal")]

@@ -1,11 +1,11 @@
 //! The branch tree, with the outcome and cost of each branch, and a comparison of the selected branch with the current one.
 
-use super::{PaneEntry, frame};
 use crate::app::App;
 use crate::columns::rows_shown;
-use crate::copying::NamedText;
+use crate::copied::NamedText;
 use crate::layout::Pane;
 use crate::paint;
+use crate::pane_entry::{PaneEntry, frame};
 use crate::view::View;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};

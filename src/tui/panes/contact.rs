@@ -1,13 +1,13 @@
 //! The contact of the selected node: its geometry and force in numbers, and below them as many of three pictures as fit: the force
 //! in the Coulomb cone (in space, the friction circle with the slip) with the trail of the last iterations, T_max over the minor iterations as a cobweb, and who pushed the node.
 
-use super::{PaneEntry, frame};
 use crate::app::App;
 use crate::canvas::{Canvas, Dot};
 use crate::chartframe::ChartFrame;
-use crate::copying::row;
+use crate::copied::row;
 use crate::layout::Pane;
 use crate::paint;
+use crate::pane_entry::{PaneEntry, frame};
 use crate::theme::Theme;
 use crate::view::View;
 use ratatui::buffer::Buffer;

@@ -1,12 +1,12 @@
 //! The load factor over a monitor at each accepted increment up to the shown frame.
 
-use super::{PaneEntry, frame};
 use crate::app::App;
 use crate::canvas::Canvas;
 use crate::chartframe::ChartFrame;
-use crate::copying::monitored;
+use crate::copied::monitored;
 use crate::layout::Pane;
 use crate::paint;
+use crate::pane_entry::{PaneEntry, frame};
 use crate::theme::Theme;
 use crate::view::View;
 use ratatui::buffer::Buffer;

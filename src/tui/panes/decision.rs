@@ -1,10 +1,10 @@
 //! The decision on the selected node: Table 2 with the cell that fired, and the tested inequalities with their values.
 
-use super::{PaneEntry, frame};
 use crate::app::App;
-use crate::copying::value;
+use crate::copied::value;
 use crate::layout::Pane;
 use crate::paint;
+use crate::pane_entry::{PaneEntry, frame};
 use crate::theme::Theme;
 use crate::view::View;
 use ratatui::buffer::Buffer;

@@ -1,11 +1,11 @@
 //! The diagnosis: What, Why and Try, and below them the loop, the census, the rates and the details. Enter takes the selected line
 //! of Try, or folds the selected part below. If nothing failed, the consistent states are listed side by side, and Enter starts from the selected one.
 
-use super::{PaneEntry, frame};
 use crate::app::App;
-use crate::copying::NamedText;
+use crate::copied::NamedText;
 use crate::layout::Pane;
 use crate::paint;
+use crate::pane_entry::{PaneEntry, frame};
 use crate::view::View;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;

@@ -1,9 +1,9 @@
 //! The lesson: the tutor's text and the next task.
 
-use super::PaneEntry;
 use crate::app::App;
-use crate::copying::row;
+use crate::copied::row;
 use crate::paint;
+use crate::pane_entry::PaneEntry;
 use crate::theme::Theme;
 use crate::view::View;
 use ratatui::buffer::Buffer;

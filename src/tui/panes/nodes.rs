@@ -1,11 +1,11 @@
 //! The slave-node table: the values of every slave node in the shown minor iteration.
 
-use super::{PaneEntry, frame};
 use crate::app::App;
 use crate::columns::rows_shown;
-use crate::copying;
+use crate::copied;
 use crate::layout::Pane;
 use crate::paint;
+use crate::pane_entry::{PaneEntry, frame};
 use crate::theme::{self, Theme};
 use crate::view::View;
 use ratatui::buffer::Buffer;
@@ -111,7 +111,7 @@ impl Columns {
 pub const PANE: PaneEntry = PaneEntry {
     draw,
     actions: &[],
-    copied: copying::row,
+    copied: copied::row,
     is_ahead: false,
 };
 

@@ -1,10 +1,10 @@
 //! The remedies that were tried, with their cost and result; the selected one can be applied.
 
-use super::{PaneEntry, frame};
 use crate::app::App;
-use crate::copying::NamedText;
+use crate::copied::NamedText;
 use crate::layout::Pane;
 use crate::paint;
+use crate::pane_entry::{PaneEntry, frame};
 use crate::view::View;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};

@@ -1,11 +1,11 @@
 //! The residual by major iteration in the shown increment, on a log scale, with its limit.
 
-use super::{PaneEntry, frame};
 use crate::app::App;
 use crate::convergence::{self, Point};
-use crate::copying::value;
+use crate::copied::value;
 use crate::layout::Pane;
 use crate::paint;
+use crate::pane_entry::{PaneEntry, frame};
 use crate::theme::Theme;
 use crate::view::View;
 use ratatui::buffer::Buffer;

@@ -3,13 +3,13 @@
 //! nodes, and slave nodes by the letters of their modes. Solids show the boundaries between materials, and their elements if these
 //! are large enough. Small displacements are magnified.
 
-use super::{PaneEntry, frame};
 use crate::app::App;
 use crate::camera::Camera;
 use crate::canvas::{Canvas, Dot};
-use crate::copying::row;
+use crate::copied::row;
 use crate::layout::Pane;
 use crate::paint;
+use crate::pane_entry::{PaneEntry, frame};
 use crate::run_shape;
 use crate::theme::{self, Theme};
 use crate::view::View;

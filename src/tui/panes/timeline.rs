@@ -4,11 +4,11 @@
 //! Rules separate majors and increments, a bracket marks a cycle, and forced modes are lower-case letters. Only the columns around
 //! the cursor are computed, so that drawing does not depend on the length of the history.
 
-use super::{PaneEntry, frame};
 use crate::app::App;
 use crate::columns::{self, Column, rows_shown};
 use crate::layout::Pane;
 use crate::paint;
+use crate::pane_entry::{PaneEntry, frame};
 use crate::view::View;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Margin, Position, Rect};
