@@ -44,7 +44,7 @@ pub fn sheet(charts: &[Precision], error_on_x: bool) -> Result<Sheet, PlotError>
 }
 
 /// One plot of a chart: maps costs and errors to the sheet.
-struct Panel<'a> {
+struct ErrorPanel<'a> {
     chart: &'a Precision,
     is_force: bool,
     error_on_x: bool,
@@ -53,9 +53,9 @@ struct Panel<'a> {
     axes: Axes,
 }
 
-impl Panel<'_> {
+impl ErrorPanel<'_> {
     /// A plot below the rest of a sheet.
-    fn new(chart: &Precision, top: f64, is_force: bool, error_on_x: bool) -> Panel<'_> {
+    fn new(chart: &Precision, top: f64, is_force: bool, error_on_x: bool) -> ErrorPanel<'_> {
         let of = |p: &Point| if is_force { p.force_error } else { p.error };
         let errors = chart.points.iter().filter_map(of);
         let levels = chart.target.filter(|_| !is_force);
@@ -66,7 +66,7 @@ impl Panel<'_> {
         let spread = spread.filter(|_| chart.cost == Cost::Time);
         let costs = chart.points.iter().map(|p| chart.cost.of(p));
         let rail = if error_on_x { 0.0 } else { RAIL };
-        Panel {
+        ErrorPanel {
             chart,
             is_force,
             error_on_x,
@@ -375,9 +375,9 @@ impl Panel<'_> {
 }
 
 fn draw(sheet: &mut Sheet, chart: &Precision, error_on_x: bool) -> Result<(), PlotError> {
-    Panel::new(chart, sheet.height, false, error_on_x).draw(sheet)?;
+    ErrorPanel::new(chart, sheet.height, false, error_on_x).draw(sheet)?;
     if chart.points.iter().any(|p| p.force_error.is_some()) {
-        Panel::new(chart, sheet.height, true, error_on_x).draw(sheet)?;
+        ErrorPanel::new(chart, sheet.height, true, error_on_x).draw(sheet)?;
     }
     let failed = || chart.points.iter().filter(|p| p.failed.is_some());
     for point in failed().take(MOST_FAILED) {
