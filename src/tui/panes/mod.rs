@@ -1,5 +1,5 @@
 //! The panes, pages and bars of the screen, one file each. Each is a function that draws the app and the view into an area, with
-//! the helpers of [`crate::paint`] and without reference to another pane. A pane also has a [`PaneEntry`].
+//! the helpers of [`crate::paint`] and without reference to another pane. A pane also has an entry.
 
 pub mod branches;
 pub mod chooser;
