@@ -1,6 +1,6 @@
 //! Work-precision charts as pictures: error over cost, or cost over error, both logarithmic.
 //!
-//! Contact forces have a second panel. Failed runs are on a rail beside the plot, at their cost until the failure, and are listed
+//! Contact forces have a second panel. Failed runs are drawn on a rail next to the plot, at their cost until the failure, and listed
 //! below it. Each run is labelled with its values or, if there is no room, with a number that is explained below. A bar through a
 //! run shows the spread of its times. A triangle shows the slope of the last step of the first series. Errors at round-off
 //! share one line; the error bar of the reference is another one.

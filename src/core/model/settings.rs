@@ -229,7 +229,7 @@ documented! {
 documented! {
     /// How often the bodies' stiffness is taken and factored.
     pub choice Refactor {
-        /// `needed` if the scene has solids and at least 4,000 equations, where it was faster in all measured scenes; else `each`.
+        /// `needed` if the scene has solids and at least 4,000 equations, where it mostly saves time (page `speed`); else `each`.
         #[default]
         Auto,
         /// In every major iteration, as in the paper.
