@@ -37,10 +37,17 @@ impl App {
         if view.is_trying() && remedies {
             return Some(WaitReason::Trying);
         }
-        let finding = matches!(view.examination(), Some(None));
-        let diagnosis = matches!(action, Action::Ui(Ui::StartFrom(_)))
-            || (chooses && self.panes.focus == Pane::Diagnosis);
-        (finding && diagnosis).then_some(WaitReason::Finding)
+        let found = view.examination()?;
+        let scrolls = matches!(action, Action::Ui(Ui::Move(Step::PageUp | Step::PageDown)));
+        let awaited = match action {
+            Action::Ui(Ui::StartFrom(_)) => found.is_none(),
+            // Trials change the order of the lines of Try.
+            _ if chooses && !scrolls && self.panes.focus == Pane::Diagnosis => {
+                found.is_none_or(|page| !page.is_complete())
+            }
+            _ => false,
+        };
+        awaited.then_some(WaitReason::Finding)
     }
 
     /// Whether an action moves along the timeline, which the session does.
