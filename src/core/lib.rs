@@ -96,7 +96,6 @@ pub mod builder;
 pub mod contact;
 pub mod documented;
 pub mod elements;
-pub mod executor;
 pub mod fem;
 pub mod interface;
 pub mod linear;
@@ -113,5 +112,6 @@ pub use model::{Mode, Model, Settings, Strategy};
 pub use step::intervene::Intervention;
 pub use step::{Event, Failure, Outcome, Solver, State, Status, Stepper};
 pub use stickslip_linalg as linalg;
+pub use stickslip_linalg::executor;
 #[cfg(mutants)]
 pub use stickslip_linalg::mutants;
