@@ -57,7 +57,7 @@ macro_rules! records {
     )+) => {
         $(
             $(#[doc = $about])*
-            #[derive(Debug, Clone, Serialize)]
+            #[derive(Debug, Clone, Default, Serialize)]
             pub struct $record {
                 $($(#[doc = $meaning])+ pub $field: $type,)+
             }

@@ -174,19 +174,7 @@ fn not_tried(remedy: &Remedy) -> RemedyRecord {
     RemedyRecord {
         remedy: remedy.label.clone(),
         command: remedy.how.typed(),
-        tried: false,
-        outcome: None,
-        failure: None,
-        law: None,
-        minors: None,
-        majors: None,
-        factorizations: None,
-        seconds: None,
-        penetration: None,
-        tension: None,
-        shear: None,
-        residual: None,
-        held: None,
+        ..RemedyRecord::default()
     }
 }
 

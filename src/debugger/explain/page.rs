@@ -267,6 +267,7 @@ impl DiagnosisPage {
 const MOST_WHY: usize = 3;
 
 /// The page in progress.
+#[derive(Default)]
 struct PageBuilder {
     what: String,
     facts: Vec<Fact>,
@@ -291,13 +292,7 @@ impl PageBuilder {
     ) -> PageBuilder {
         let mut page = PageBuilder {
             what: headline(stepper.model(), state, failure),
-            facts: Vec::new(),
-            by_hand: Vec::new(),
-            pending: Vec::new(),
-            trials: Vec::new(),
-            refines: false,
-            finer: None,
-            found: Examination::default(),
+            ..PageBuilder::default()
         };
         let cause = MaterialCause::find(stepper.model(), state, failure);
         let certain = cause.filter(MaterialCause::is_certain);
