@@ -5,10 +5,7 @@ use super::base::{Error, Exit, notify, quoted, run_to_end, say};
 use super::json::{self, JsonArgs};
 use super::records::{FailureKind, FailureRecord, RemediesRecord, RemedyRecord};
 use super::solver::{Subject, SubjectArgs, step_to_end};
-use stickslip_core::step::drive::RunEnd;
-use stickslip_core::step::event::Failure;
-use stickslip_core::step::solver::Solver;
-use stickslip_core::step::state::State;
+use stickslip_core::{Failure, RunEnd, Solver, State};
 use stickslip_debugger::explain::examination::Examination;
 use stickslip_debugger::explain::page::DiagnosisPage;
 use stickslip_debugger::explain::remedies::{

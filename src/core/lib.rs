@@ -105,12 +105,20 @@ pub mod plane;
 pub mod step;
 pub mod strategy;
 
+pub use contact::record::{ContactRecord, Forced};
+pub use contact::state::ContactState;
+pub use contact::table2::Rule;
 pub use interface::method::Method;
 pub use interface::problem::InterfaceProblem;
 pub use interface::trials::Trials;
+pub use linear::norms::Norms;
+pub use linear::singular::Singular;
 pub use linear::source::Source;
 pub use model::{Mode, Model, Settings, Strategy};
+pub use step::drive::{RunEnd, Until};
+pub use step::event::Position;
 pub use step::intervene::Intervention;
+pub use step::solver::{Capabilities, ReportedProblem, RewindSupport, SolverLost};
 pub use step::{Event, Failure, Outcome, Solver, State, Status, Stepper};
 pub use stickslip_linalg as linalg;
 #[cfg(mutants)]

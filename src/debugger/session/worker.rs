@@ -10,11 +10,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, Sender, SyncSender, TryRecvError, channel, sync_channel};
 use std::time::Duration;
-use stickslip_core::step::drive::{RunEnd, Until, drive};
-use stickslip_core::step::event::Event;
-use stickslip_core::step::intervene::Intervention;
-use stickslip_core::step::solver::{Solver, SolverLost};
-use stickslip_core::step::state::State;
+use stickslip_core::step::drive::drive;
+use stickslip_core::{Event, Intervention, RunEnd, Solver, SolverLost, State, Until};
 use stickslip_platform::clock::Instant;
 use stickslip_platform::task::{self, Next, Task};
 
