@@ -58,6 +58,14 @@ struct Workspace {
     before: Vec<f64>,
 }
 
+impl Workspace {
+    /// u, the last accepted u, force and tangent of an element with n degrees of freedom.
+    fn of_element(&mut self, n: usize) -> [&mut [f64]; 4] {
+        let (force, tangent) = (&mut self.force[..n], &mut self.tangent[..n * n]);
+        [&mut self.u[..n], &mut self.before[..n], force, tangent]
+    }
+}
+
 /// Elements that are assembled independently.
 struct Group {
     elements: Range<usize>,
@@ -317,9 +325,7 @@ impl Assembly {
         size.fill(0.0);
         for placed in &self.elements {
             let n = placed.dofs.len();
-            let room = &mut self.room;
-            let (u, before) = (&mut room.u[..n], &mut room.before[..n]);
-            let (own, tangent) = (&mut room.force[..n], &mut room.tangent[..n * n]);
+            let [u, before, own, tangent] = self.room.of_element(n);
             let past = placed.gather_all(&moved, u, before);
             own.fill(0.0);
             let answers = placed.element.resist(&past, u, own, tangent);
@@ -339,9 +345,7 @@ impl Assembly {
         coupling.fill(0.0);
         for placed in self.elements.iter().filter(|p| p.held) {
             let n = placed.dofs.len();
-            let room = &mut self.room;
-            let (u, before) = (&mut room.u[..n], &mut room.before[..n]);
-            let (force, tangent) = (&mut room.force[..n], &mut room.tangent[..n * n]);
+            let [u, before, force, tangent] = self.room.of_element(n);
             let past = placed.gather_all(&moved, u, before);
             force.fill(0.0);
             tangent.fill(0.0);
