@@ -3,9 +3,9 @@
 
 use stickslip_core::contact::element::SurfaceElement;
 use stickslip_core::fem::lagrange;
-use stickslip_core::model::{Body, BodyKind, Model};
+use stickslip_core::model::{Body, BodyKind};
 use stickslip_core::plane::minus;
-use stickslip_core::step::event::Event;
+use stickslip_core::{Event, Model};
 
 /// A point in the scene or on the sheet.
 pub type Point = [f64; 2];

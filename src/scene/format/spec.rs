@@ -11,10 +11,11 @@ use super::in_space::SpaceSpec;
 pub use super::loads::{LoadSpec, Scale};
 pub use super::monitor::{MonitorSpec, Quantity};
 use stickslip_core::model::{
-    Component, Control, ElementKind, InitialState, Jumps, Law, Mode, Plane, Settings, SlavePoints,
-    Update, least, on_leg,
+    Component, Control, ElementKind, InitialState, Jumps, Law, Plane, SlavePoints, Update, least,
+    on_leg,
 };
 use stickslip_core::words::is_default;
+use stickslip_core::{Mode, Settings};
 
 /// A point or a vector in the plane, `(x, y)`, in the scene's unit of length.
 pub type Point = (f64, f64);
