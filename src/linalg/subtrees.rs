@@ -35,6 +35,8 @@ const COLUMNS: usize = 64;
 const PARTS: usize = 8;
 /// Products with at most this many columns are computed in full, with the unused half.
 const NARROW: usize = 16;
+/// A product is computed in batches of this many rows, which bounds the workspace.
+const ROWS: usize = 256;
 
 /// A matrix to factor: the pattern and the values of its lower half.
 #[derive(Clone, Copy)]
@@ -216,9 +218,11 @@ impl Workspace {
             let most = own.width().div_ceil(parts(own.width()));
             for &d in l.earlier(s) {
                 let (rows, shared) = l.shared(d, &own.columns);
-                longest = longest.max(rows.len());
-                scaled = scaled.max(rows.len() * l.nodes[d].width());
-                result = result.max(rows.len() * shared.min(most));
+                let shared = shared.min(most);
+                let rows = batch(rows.len(), shared);
+                longest = longest.max(rows);
+                scaled = scaled.max(rows * l.nodes[d].width());
+                result = result.max(rows * shared);
             }
             count = count.max(parts(own.width()));
             width = width.max(own.width());
@@ -306,35 +310,42 @@ impl Sum<'_> {
         if shared == 0 {
             return;
         }
-        let (count, first) = (rows.len(), node.height() - rows.len());
-        let earlier = &self.earlier[node.values.start - self.start..node.values.end - self.start];
-        let scaled = &mut product.scaled[..count * node.width()];
-        let own = earlier.chunks_exact(node.height());
-        for ((k, column), scaled) in own.enumerate().zip(scaled.chunks_exact_mut(count)) {
-            for (scaled, l) in scaled.iter_mut().zip(&column[first..]) {
-                *scaled = l * column[k];
+        let values = &self.earlier[node.values.start - self.start..node.values.end - self.start];
+        let (all, first) = (rows.len(), node.height() - rows.len());
+        let l = MatRef::from_column_major_slice(values, node.height(), node.width());
+        let l = l.subrows(first, shared).transpose();
+        let height = self.l.nodes[self.s].height();
+        let most = batch(all, shared);
+        for start in (0..all).step_by(most) {
+            let count = most.min(all - start);
+            let scaled = &mut product.scaled[..count * node.width()];
+            let own = values.chunks_exact(node.height());
+            for ((k, column), scaled) in own.enumerate().zip(scaled.chunks_exact_mut(count)) {
+                for (scaled, l) in scaled.iter_mut().zip(&column[first + start..]) {
+                    *scaled = l * column[k];
+                }
+            }
+            let scaled = MatRef::from_column_major_slice(scaled, count, node.width());
+            let result = &mut product.result[..count * shared];
+            let out_of = MatMut::from_column_major_slice_mut(result, count, shared);
+            multiply(scaled, l, out_of, start == 0);
+            let places = &mut product.places[..count];
+            for (place, &row) in places.iter_mut().zip(&rows[start..]) {
+                *place = self.place[row];
+            }
+            for (k, column) in result.chunks_exact(count).enumerate() {
+                let to = (rows[k] - columns.start) * height;
+                let to = &mut out[to..to + height];
+                let above = k.saturating_sub(start);
+                subtract_at(to, &column[above..], &places[above..]);
             }
         }
-        let scaled = MatRef::from_column_major_slice(scaled, count, node.width());
-        let l = MatRef::from_column_major_slice(earlier, node.height(), node.width());
-        let l = l.subrows(first, shared).transpose();
-        let result = &mut product.result[..count * shared];
-        multiply(
-            scaled,
-            l,
-            MatMut::from_column_major_slice_mut(result, count, shared),
-        );
-        let places = &mut product.places[..count];
-        for (place, &row) in places.iter_mut().zip(rows) {
-            *place = self.place[row];
-        }
-        let height = self.l.nodes[self.s].height();
-        for (k, column) in result.chunks_exact(count).enumerate() {
-            let to = (rows[k] - columns.start) * height;
-            let to = &mut out[to..to + height];
-            subtract_at(to, &column[k..], &places[k..]);
-        }
     }
+}
+
+/// Number of rows of a product that are computed together: at least those of the square.
+fn batch(rows: usize, shared: usize) -> usize {
+    rows.min(shared.max(ROWS))
 }
 
 /// Subtracts values at ascending places.
@@ -358,11 +369,11 @@ fn subtract_at(to: &mut [f64], values: &[f64], places: &[u32]) {
     }
 }
 
-/// The lower half of a product, and perhaps some of the upper half.
-fn multiply(a: MatRef<'_, f64>, b: MatRef<'_, f64>, out: MatMut<'_, f64>) {
+/// A product; of a square at the top, perhaps only the lower half.
+fn multiply(a: MatRef<'_, f64>, b: MatRef<'_, f64>, out: MatMut<'_, f64>, at_top: bool) {
     use BlockStructure::{Rectangular, TriangularLower};
     let (all, count) = (a.nrows(), b.ncols());
-    if count <= NARROW {
+    if !at_top || count <= NARROW {
         return matmul(out, Accum::Replace, a, b, 1.0, Par::Seq);
     }
     let (top, bottom) = out.split_at_row_mut(count);
