@@ -30,13 +30,12 @@ const DEPTH: usize = 3;
 /// A range is split if it takes at least this many multiplications, and if this saves at least this fraction of them on two threads.
 const LEAST: f64 = 1e7;
 const SAVED: f64 = 0.1;
-/// Number of columns of a supernode that are changed together, and the most such parts.
-const COLUMNS: usize = 64;
-const PARTS: usize = 8;
 /// Products with at most this many columns are computed in full, with the unused half.
 const NARROW: usize = 16;
-/// A product is computed in batches of this many rows, which bounds the workspace.
-const ROWS: usize = 256;
+/// A product is computed in batches of at most this many rows and columns, which bounds the workspace.
+const ROWS: usize = 128;
+/// Rows below a supernode that is at least this wide are divided by its L in parallel.
+const WIDE: usize = 64;
 
 /// A matrix to factor: the pattern and the values of its lower half.
 #[derive(Clone, Copy)]
@@ -53,23 +52,19 @@ pub(super) struct Subtree {
     halves: Option<Box<[Subtree; 2]>>,
     /// The supernodes that follow.
     top: Range<usize>,
-    room: Workspace,
+    /// Number of parts that are not split, and of workspaces.
+    pub leaves: usize,
 }
 
-/// Workspace for one supernode at a time.
-struct Workspace {
-    /// Row of each unknown in the supernode.
+/// Workspace of a thread.
+pub(super) struct Workspace {
+    /// Row of each unknown in the current supernode.
     place: Vec<u32>,
-    products: Vec<Product>,
-    dense: MemBuffer,
-}
-
-/// Workspace of a product: L D of some rows, their places in the supernode, and the result.
-#[derive(Clone)]
-struct Product {
+    /// Of a product: L D of some rows, their places in the supernode, and the result.
     scaled: Vec<f64>,
     places: Vec<u32>,
     result: Vec<f64>,
+    dense: MemBuffer,
 }
 
 /// Quantities by which the supernodes are split.
@@ -82,10 +77,7 @@ struct Costs {
 
 impl Subtree {
     /// All supernodes.
-    ///
-    /// # Errors
-    /// [`SolveError::OutOfMemory`].
-    pub fn new(l: &Supernodes) -> Result<Self, SolveError> {
+    pub fn new(l: &Supernodes) -> Self {
         let whole = 0..l.nodes.len();
         match Costs::new(l) {
             Some(costs) => Subtree::split(l, whole, &costs, DEPTH),
@@ -99,22 +91,17 @@ impl Subtree {
         self.halves.is_some()
     }
 
-    fn whole(l: &Supernodes, top: Range<usize>) -> Result<Self, SolveError> {
-        Ok(Subtree {
+    fn whole(l: &Supernodes, top: Range<usize>) -> Self {
+        Subtree {
             start: l.nodes.get(top.start).map_or(0, |node| node.values.start),
             halves: None,
-            room: Workspace::new(l, top.clone())?,
             top,
-        })
+            leaves: 1,
+        }
     }
 
     /// Splits a range where two threads need the least time.
-    fn split(
-        l: &Supernodes,
-        range: Range<usize>,
-        costs: &Costs,
-        depth: usize,
-    ) -> Result<Self, SolveError> {
+    fn split(l: &Supernodes, range: Range<usize>, costs: &Costs, depth: usize) -> Self {
         let whole = costs.of(&range);
         let mut best = (whole * (1.0 - SAVED), None);
         let mut top = range.end;
@@ -134,33 +121,35 @@ impl Subtree {
             return Subtree::whole(l, range);
         };
         let half = |half| Subtree::split(l, half, costs, depth - 1);
-        let halves = [half(range.start..middle)?, half(middle..top)?];
-        Ok(Subtree {
+        let halves = [half(range.start..middle), half(middle..top)];
+        Subtree {
             start: halves[0].start,
+            leaves: halves[0].leaves + halves[1].leaves,
             halves: Some(Box::new(halves)),
-            ..Subtree::whole(l, top..range.end)?
-        })
+            top: top..range.end,
+        }
     }
 
-    /// Factors the supernodes; `values` are theirs.
+    /// Factors the supernodes; `values` are theirs, and there is a room for each leaf.
     ///
     /// # Errors
     /// [`SolveError::Singular`] if a pivot vanishes.
     pub fn factor(
-        &mut self,
+        &self,
         l: &Supernodes,
         matrix: LowerHalf<'_>,
         values: &mut [f64],
+        rooms: &mut [Workspace],
         executor: &dyn Executor,
     ) -> Result<(), SolveError> {
-        if let Some(halves) = &mut self.halves {
-            let [first, second] = &mut **halves;
+        if let Some([first, second]) = self.halves.as_deref() {
+            let (before, after) = rooms.split_at_mut(first.leaves);
             let (left, right) = values.split_at_mut(second.start - self.start);
             let mut done = [Ok(()); 2];
             let [first_done, second_done] = &mut done;
             executor.join(
-                &mut || *first_done = first.factor(l, matrix, left, executor),
-                &mut || *second_done = second.factor(l, matrix, right, executor),
+                &mut || *first_done = first.factor(l, matrix, left, before, executor),
+                &mut || *second_done = second.factor(l, matrix, right, after, executor),
             );
             done[0].and(done[1])?;
         }
@@ -168,18 +157,19 @@ impl Subtree {
             let node = &l.nodes[s];
             let (earlier, own) = values.split_at_mut(node.values.start - self.start);
             let own = &mut own[..node.values.len()];
-            self.room.find_places(l, s);
+            rooms[0].find_places(l, s);
+            let place = std::mem::take(&mut rooms[0].place);
             let sum = Sum {
                 l,
                 s,
                 matrix,
                 earlier,
                 start: self.start,
-                place: &self.room.place,
+                place: &place,
             };
-            let products = &mut self.room.products[..parts(node.width())];
-            sum.all(node.columns.clone(), own, products, executor);
-            eliminate(node, own, &mut self.room.dense, executor)?;
+            sum.all(node.columns.clone(), own, rooms, executor);
+            rooms[0].place = place;
+            eliminate(node, own, rooms, executor)?;
         }
         Ok(())
     }
@@ -210,32 +200,18 @@ impl Costs {
 }
 
 impl Workspace {
-    /// For these supernodes.
-    fn new(l: &Supernodes, range: Range<usize>) -> Result<Self, SolveError> {
-        let (mut longest, mut scaled, mut result, mut count, mut width) = (0, 0, 0, 1, 0);
-        for s in range {
-            let own = &l.nodes[s];
-            let most = own.width().div_ceil(parts(own.width()));
-            for &d in l.earlier(s) {
-                let (rows, shared) = l.shared(d, &own.columns);
-                let shared = shared.min(most);
-                let rows = batch(rows.len(), shared);
-                longest = longest.max(rows);
-                scaled = scaled.max(rows * l.nodes[d].width());
-                result = result.max(rows * shared);
-            }
-            count = count.max(parts(own.width()));
-            width = width.max(own.width());
-        }
-        let product = Product {
-            scaled: vec![0.0; scaled],
-            places: vec![0; longest],
-            result: vec![0.0; result],
-        };
+    /// # Errors
+    /// [`SolveError::OutOfMemory`].
+    pub fn new(l: &Supernodes) -> Result<Self, SolveError> {
+        let width = l.nodes.iter().map(Supernode::width).max().unwrap_or(0);
+        let rows = (0..l.nodes.len()).map(|s| l.rows(s).len()).max();
+        let rows = rows.map_or(0, |rows| rows.min(ROWS));
         let dense = cholesky_in_place_scratch::<f64>(width, Par::Seq, Default::default());
         Ok(Workspace {
             place: vec![0; l.nodes.last().map_or(0, |node| node.columns.end)],
-            products: vec![product; count],
+            scaled: vec![0.0; rows * width],
+            places: vec![0; rows],
+            result: vec![0.0; rows * width.min(ROWS)],
             dense: MemBuffer::try_new(dense).map_err(|_| SolveError::OutOfMemory)?,
         })
     }
@@ -247,11 +223,6 @@ impl Workspace {
             self.place[row] = k;
         }
     }
-}
-
-/// Number of parts in which the columns of a supernode of this width are changed.
-fn parts(width: usize) -> usize {
-    (width / COLUMNS).clamp(1, PARTS)
 }
 
 /// The sum B of a supernode.
@@ -266,28 +237,33 @@ struct Sum<'a> {
 }
 
 impl Sum<'_> {
-    /// B in these columns, in as many parts as there are products.
+    /// B in these columns, of which no more than `ROWS` are computed together; separate ones are computed in parallel if there are
+    /// several rooms.
     fn all(
         &self,
         columns: Range<usize>,
         out: &mut [f64],
-        products: &mut [Product],
+        rooms: &mut [Workspace],
         executor: &dyn Executor,
     ) {
-        if let [product] = products {
-            return self.columns(columns, out, product);
+        if columns.len() <= ROWS {
+            return self.columns(columns, out, &mut rooms[0]);
         }
-        let (first, second) = products.split_at_mut(products.len() / 2);
-        let middle = columns.start + columns.len() * first.len() / (first.len() + second.len());
+        let middle = columns.start + columns.len() / 2;
         let height = self.l.nodes[self.s].height();
         let (left, right) = out.split_at_mut((middle - columns.start) * height);
+        if rooms.len() == 1 {
+            self.all(columns.start..middle, left, rooms, executor);
+            return self.all(middle..columns.end, right, rooms, executor);
+        }
+        let (first, second) = rooms.split_at_mut(rooms.len() / 2);
         executor.join(
             &mut || self.all(columns.start..middle, left, first, executor),
             &mut || self.all(middle..columns.end, right, second, executor),
         );
     }
 
-    fn columns(&self, columns: Range<usize>, out: &mut [f64], product: &mut Product) {
+    fn columns(&self, columns: Range<usize>, out: &mut [f64], room: &mut Workspace) {
         out.fill(0.0);
         let height = self.l.nodes[self.s].height();
         for (column, out) in columns.clone().zip(out.chunks_exact_mut(height)) {
@@ -299,12 +275,12 @@ impl Sum<'_> {
             }
         }
         for &d in self.l.earlier(self.s) {
-            self.subtract(d, &columns, out, product);
+            self.subtract(d, &columns, out, room);
         }
     }
 
     /// Subtracts L_·d D_d L_sdᵀ.
-    fn subtract(&self, d: usize, columns: &Range<usize>, out: &mut [f64], product: &mut Product) {
+    fn subtract(&self, d: usize, columns: &Range<usize>, out: &mut [f64], room: &mut Workspace) {
         let node = &self.l.nodes[d];
         let (rows, shared) = self.l.shared(d, columns);
         if shared == 0 {
@@ -315,10 +291,9 @@ impl Sum<'_> {
         let l = MatRef::from_column_major_slice(values, node.height(), node.width());
         let l = l.subrows(first, shared).transpose();
         let height = self.l.nodes[self.s].height();
-        let most = batch(all, shared);
-        for start in (0..all).step_by(most) {
-            let count = most.min(all - start);
-            let scaled = &mut product.scaled[..count * node.width()];
+        for start in (0..all).step_by(ROWS) {
+            let count = ROWS.min(all - start);
+            let scaled = &mut room.scaled[..count * node.width()];
             let own = values.chunks_exact(node.height());
             for ((k, column), scaled) in own.enumerate().zip(scaled.chunks_exact_mut(count)) {
                 for (scaled, l) in scaled.iter_mut().zip(&column[first + start..]) {
@@ -326,10 +301,10 @@ impl Sum<'_> {
                 }
             }
             let scaled = MatRef::from_column_major_slice(scaled, count, node.width());
-            let result = &mut product.result[..count * shared];
+            let result = &mut room.result[..count * shared];
             let out_of = MatMut::from_column_major_slice_mut(result, count, shared);
             multiply(scaled, l, out_of, start == 0);
-            let places = &mut product.places[..count];
+            let places = &mut room.places[..count];
             for (place, &row) in places.iter_mut().zip(&rows[start..]) {
                 *place = self.place[row];
             }
@@ -341,11 +316,6 @@ impl Sum<'_> {
             }
         }
     }
-}
-
-/// Number of rows of a product that are computed together: at least those of the square.
-fn batch(rows: usize, shared: usize) -> usize {
-    rows.min(shared.max(ROWS))
 }
 
 /// Subtracts values at ascending places.
@@ -397,7 +367,7 @@ fn multiply(a: MatRef<'_, f64>, b: MatRef<'_, f64>, out: MatMut<'_, f64>, at_top
 fn eliminate(
     node: &Supernode,
     values: &mut [f64],
-    memory: &mut MemBuffer,
+    rooms: &mut [Workspace],
     executor: &dyn Executor,
 ) -> Result<(), SolveError> {
     let (width, height) = (node.width(), node.height());
@@ -407,11 +377,12 @@ fn eliminate(
         own.as_mut(),
         LdltRegularization::default(),
         Par::Seq,
-        MemStack::new(memory),
+        MemStack::new(&mut rooms[0].dense),
         Default::default(),
     )
     .map_err(|_| SolveError::Singular)?;
-    divide(own.as_ref(), below, parts(width), executor);
+    let parts = if width < WIDE { 1 } else { rooms.len() };
+    divide(own.as_ref(), below, parts, executor);
     for (k, column) in values.chunks_exact_mut(height).enumerate() {
         let (own, below) = column.split_at_mut(width);
         let inverse = own[k].recip();

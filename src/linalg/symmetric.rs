@@ -25,7 +25,7 @@ use super::check::{SolveError, largest};
 use super::executor::Executor;
 use super::order::order;
 use super::pattern::{Pattern, symbolic_view};
-use super::subtrees::{LowerHalf, Subtree};
+use super::subtrees::{LowerHalf, Subtree, Workspace};
 use super::supernodes::Supernodes;
 use faer::linalg::matmul::triangular::{BlockStructure, matmul};
 use faer::sparse::linalg::SupernodalThreshold;
@@ -45,6 +45,7 @@ pub struct SymmetricFactors {
     from: Vec<usize>,
     l: Supernodes,
     tree: Subtree,
+    rooms: Vec<Workspace>,
     /// All unknowns in elimination order.
     order: Vec<usize>,
     /// The unknowns eliminated last, in order.
@@ -92,6 +93,7 @@ impl SymmetricFactors {
             unreachable!("the symbolic part must be supernodal")
         };
         let l = Supernodes::from_symbolic(raw);
+        let tree = Subtree::new(&l);
         let rows = (0..l.nodes.len()).map(|s| l.rows(s).len());
         let below = rows.max().unwrap_or(0);
         let diagonal = (n - last.len()..n)
@@ -99,7 +101,10 @@ impl SymmetricFactors {
             .collect::<Result<_, _>>()?;
         Ok(SymmetricFactors {
             factors: vec![0.0; symbolic.len_val()],
-            tree: Subtree::new(&l)?,
+            rooms: (0..tree.leaves)
+                .map(|_| Workspace::new(&l))
+                .collect::<Result<_, _>>()?,
+            tree,
             l,
             values: vec![0.0; lower.entries()],
             size: 0.0,
@@ -141,8 +146,13 @@ impl SymmetricFactors {
             pattern: &self.pattern,
             values: &self.values,
         };
-        self.tree
-            .factor(&self.l, matrix, &mut self.factors, executor)?;
+        self.tree.factor(
+            &self.l,
+            matrix,
+            &mut self.factors,
+            &mut self.rooms,
+            executor,
+        )?;
         for node in &self.l.nodes {
             let own = &mut self.pivots[node.columns.clone()];
             for (k, pivot) in own.iter_mut().enumerate() {
