@@ -26,7 +26,7 @@ use faer::{Accum, MatMut, MatRef, Par};
 use std::ops::Range;
 
 /// A range of supernodes is split at most this many times.
-const DEPTH: usize = 3;
+const DEPTH: usize = 2;
 /// A range is split if it takes at least this many multiplications, and if this saves at least this fraction of them on two threads.
 const LEAST: f64 = 1e7;
 const SAVED: f64 = 0.1;
