@@ -268,6 +268,16 @@ impl ShapeDrawing<'_> {
         }
     }
 
+    /// Draws a curve that labels must not cover.
+    fn line(&mut self, points: &[Point], pen: &Pen) {
+        self.stroke(points, pen);
+        for chain in self.window.inside(&curve(points)) {
+            for pair in chain.windows(2) {
+                self.taken.take_line(pair[0], pair[1]);
+            }
+        }
+    }
+
     /// Undeformed (dashed) and deformed elements.
     fn bodies(&mut self) {
         let model = &self.shown.scene.model;
@@ -281,12 +291,7 @@ impl ShapeDrawing<'_> {
                 .iter()
                 .map(|&node| OBLIQUE.at(model, node))
                 .collect();
-            self.stroke(&points, &before);
-            for chain in self.window.inside(&curve(&points)) {
-                for pair in chain.windows(2) {
-                    self.taken.take_line(pair[0], pair[1]);
-                }
-            }
+            self.line(&points, &before);
         }
         for body in &model.bodies {
             let BodyKind::Solid(solid) = &body.kind else {
@@ -306,12 +311,7 @@ impl ShapeDrawing<'_> {
         }
         for element in lines() {
             let points: Vec<Point> = element.iter().map(|&node| (self.now)(node)).collect();
-            self.stroke(&points, &pen(2.0, DARK));
-            for chain in self.window.inside(&curve(&points)) {
-                for pair in chain.windows(2) {
-                    self.taken.take_line(pair[0], pair[1]);
-                }
-            }
+            self.line(&points, &pen(2.0, DARK));
         }
     }
 
