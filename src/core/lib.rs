@@ -96,7 +96,6 @@ pub mod builder;
 pub mod contact;
 pub mod documented;
 pub mod elements;
-pub mod executor;
 pub mod fem;
 pub mod interface;
 pub mod linear;
@@ -121,5 +120,6 @@ pub use step::intervene::Intervention;
 pub use step::solver::{Capabilities, ReportedProblem, RewindSupport, SolverLost};
 pub use step::{Event, Failure, Outcome, Solver, State, Status, Stepper};
 pub use stickslip_linalg as linalg;
+pub use stickslip_linalg::executor;
 #[cfg(mutants)]
 pub use stickslip_linalg::mutants;

@@ -95,7 +95,7 @@ pub fn curve(nodes: &[Point]) -> Vec<Point> {
 /// The points whose Lagrange curve is that of a master element; `place` gives the positions of nodes.
 pub fn element(element: SurfaceElement<'_>, place: impl Fn(usize) -> Point) -> Vec<Point> {
     let nodes: Vec<Point> = element.nodes.iter().map(|&node| place(node)).collect();
-    if !element.is_smooth() {
+    if element.is_plain() {
         return nodes;
     }
     let count = element.degree() + 1;

@@ -212,6 +212,7 @@ impl Problem {
                 along: FLOOR.to_owned(),
                 reverse: false,
                 endless: true,
+                past_ends: 0.0,
                 smooth: false,
                 cut: false,
             }],

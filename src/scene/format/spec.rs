@@ -4,7 +4,7 @@
 //! rejects invalid values. Every field is either required or has the default named in its comment.
 
 use super::arc::ArcSpec;
-use super::contact_law::{ContactLaw, FrictionSpec};
+use super::contact_law::{ContactLaw, FrictionSpec, is_zero};
 use super::described::macros::described;
 use super::given::{Cells, NodeSet, SideSet};
 use super::in_space::SpaceSpec;
@@ -503,6 +503,11 @@ described! {
         /// Extend the surface straight beyond both ends; requires a straight, rigid surface. Default: false.
         #[serde(default)]
         pub endless: bool,
+        /// Extend the surface past each of its ends, on the same curve: a slave node that touches stays on it up to this part of
+        /// the first or last element beyond the end, a free one comes to it up to half of that. A node that starts at the end of
+        /// the surface otherwise leaves it as soon as it moves outward at all. Default: 0.
+        #[serde(default, skip_serializing_if = "is_zero")]
+        pub past_ends: f64,
         /// Use one smooth curve through all nodes of the chain, so that the normal does not jump between elements: a cubic from
         /// node to node, whose slope at a node is that of the parabola through the node and its two neighbours. Sharp corners are
         /// rounded too; where a corner is real, define two surfaces. Default: false, each element is a separate curve.
