@@ -9,14 +9,14 @@ use super::link::{Link, Start, name};
 use super::started_solver::{self, StartedSolver, meet};
 use std::sync::Arc;
 use std::sync::atomic::AtomicUsize;
-use stickslip_core::model::{Mode, Model};
 use stickslip_core::step::Status;
-use stickslip_core::step::event::{Event, Position};
-use stickslip_core::step::intervene::{Intervention, Refusal};
-use stickslip_core::step::solver::{Capabilities, ReportedProblem, Solver, SolverLost};
-use stickslip_core::step::state::State;
+use stickslip_core::step::intervene::Refusal;
 use stickslip_core::step::stored_states::StoredStates;
 use stickslip_core::words::counted;
+use stickslip_core::{
+    Capabilities, Event, Intervention, Mode, Model, Position, ReportedProblem, Solver, SolverLost,
+    State,
+};
 use stickslip_debugger::explain::names;
 use stickslip_debugger::recorded::decode::{self, RecordedStep, WireFrame};
 use stickslip_debugger::recorded::fault::Fault;

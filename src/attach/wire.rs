@@ -2,11 +2,9 @@
 //!
 //! Nothing is rounded, so that a trace made from the messages has the same bits.
 
-use stickslip_core::contact::record::{self, ContactRecord};
-use stickslip_core::linear::norms::Norms;
-use stickslip_core::model::{Axis, Bond, Control, Jumps, Model, MonitorQuantity};
-use stickslip_core::step::event::{Event, Failure, Outcome};
-use stickslip_core::step::state::State;
+use stickslip_core::contact::record::{self};
+use stickslip_core::model::{Axis, Bond, Control, Jumps, MonitorQuantity};
+use stickslip_core::{ContactRecord, Event, Failure, Model, Norms, Outcome, State};
 use stickslip_debugger::explain::failures;
 use stickslip_debugger::explain::names;
 use stickslip_exchange::attach::message::{

@@ -12,7 +12,7 @@ use clap_complete::engine::{
 use clap_complete::env::Shells;
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
-use stickslip_core::model::Strategy;
+use stickslip_core::Strategy;
 use stickslip_debugger::teach;
 use stickslip_manual as manual;
 use stickslip_scene::builtin;

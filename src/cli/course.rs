@@ -3,8 +3,7 @@
 use super::base::{Error, usage};
 use super::interrupt::Interrupt;
 use std::ops::ControlFlow;
-use stickslip_core::step::drive::{RunEnd, Until};
-use stickslip_core::step::stepper::Stepper;
+use stickslip_core::{RunEnd, Stepper, Until};
 use stickslip_debugger::record::snapshot::{AppliedIntervention, Snapshot, SnapshotError};
 use stickslip_scene::{IN_SPACE, Scene};
 

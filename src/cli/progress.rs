@@ -2,10 +2,8 @@
 
 use std::io::{self, IsTerminal, Write};
 use std::time::{Duration, Instant};
-use stickslip_core::model::Model;
-use stickslip_core::step::event::Event;
-use stickslip_core::step::state::State;
 use stickslip_core::words::counted;
+use stickslip_core::{Event, Model, State};
 use stickslip_debugger::explain::names;
 
 /// Interval between two progress lines.

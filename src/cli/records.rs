@@ -4,8 +4,7 @@
 //! removed or changes its meaning; new fields do not change it.
 
 use serde::Serialize;
-use stickslip_core::model::Model;
-use stickslip_core::step::event::{Failure, Position};
+use stickslip_core::{Failure, Model, Position};
 use stickslip_debugger::explain::failures;
 
 /// The type of a field, as the page names it.
@@ -57,7 +56,7 @@ macro_rules! records {
     )+) => {
         $(
             $(#[doc = $about])*
-            #[derive(Debug, Clone, Serialize)]
+            #[derive(Debug, Clone, Default, Serialize)]
             pub struct $record {
                 $($(#[doc = $meaning])+ pub $field: $type,)+
             }

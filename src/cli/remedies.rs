@@ -5,10 +5,7 @@ use super::base::{Error, Exit, notify, quoted, run_to_end, say};
 use super::json::{self, JsonArgs};
 use super::records::{FailureKind, FailureRecord, RemediesRecord, RemedyRecord};
 use super::solver::{Subject, SubjectArgs, step_to_end};
-use stickslip_core::step::drive::RunEnd;
-use stickslip_core::step::event::Failure;
-use stickslip_core::step::solver::Solver;
-use stickslip_core::step::state::State;
+use stickslip_core::{Failure, RunEnd, Solver, State};
 use stickslip_debugger::explain::examination::Examination;
 use stickslip_debugger::explain::page::DiagnosisPage;
 use stickslip_debugger::explain::remedies::{
@@ -174,19 +171,7 @@ fn not_tried(remedy: &Remedy) -> RemedyRecord {
     RemedyRecord {
         remedy: remedy.label.clone(),
         command: remedy.how.typed(),
-        tried: false,
-        outcome: None,
-        failure: None,
-        law: None,
-        minors: None,
-        majors: None,
-        factorizations: None,
-        seconds: None,
-        penetration: None,
-        tension: None,
-        shear: None,
-        residual: None,
-        held: None,
+        ..RemedyRecord::default()
     }
 }
 

@@ -5,7 +5,7 @@ use super::grids::{GridInterval, Grids};
 use super::json::JsonArgs;
 use super::sink::Sink;
 use std::path::PathBuf;
-use stickslip_core::model::Model;
+use stickslip_core::Model;
 use stickslip_debugger::record::table;
 use stickslip_platform::files::Output;
 use stickslip_scene::Scene;

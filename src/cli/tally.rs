@@ -6,13 +6,11 @@ use super::records::{FallbackRecord, MonitorRecord, SlaveRecord, StabilityRecord
 use super::run_outputs::{RunOutputs, first_closed, send};
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
-use stickslip_core::contact::record::ContactRecord;
-use stickslip_core::linear::norms::Norms;
 use stickslip_core::linear::stability::Stability;
-use stickslip_core::step::event::{Event, MotionEvent, Outcome};
+use stickslip_core::step::event::MotionEvent;
 use stickslip_core::step::recovery::fallback::Fallback;
-use stickslip_core::step::solver::Solver;
 use stickslip_core::words::counted;
+use stickslip_core::{ContactRecord, Event, Norms, Outcome, Solver};
 use stickslip_debugger::explain::accuracy;
 use stickslip_debugger::explain::bond;
 use stickslip_debugger::explain::limit_load::body_without_friction;

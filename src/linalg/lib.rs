@@ -2,7 +2,8 @@
 //!
 //! - [`Factors`]: sparse LU of square matrices, mainly the augmented system of eqn (9); `fronts`, `front`, `tree`, `graph` and
 //!   `dissection` implement its multifrontal factorization;
-//! - [`SymmetricFactors`]: sparse LDLᵀ of the bodies alone, which also condenses them to their interface (eqn 6);
+//! - [`SymmetricFactors`]: sparse LDLᵀ of the bodies alone, which also condenses them to their interface (eqn 6); `supernodes` and
+//!   `subtrees` are its structure and its factorization, on the threads of an [`executor::Executor`];
 //! - [`DenseFactors`]: dense LU of the small interface systems.
 //!
 //! faer reports a singular matrix as success and returns infinities, so every solve is checked (`check`).
@@ -12,6 +13,7 @@
 mod check;
 mod dense;
 mod dissection;
+pub mod executor;
 mod front;
 mod fronts;
 mod graph;
@@ -20,6 +22,8 @@ mod lu;
 pub mod mutants;
 mod order;
 mod pattern;
+mod subtrees;
+mod supernodes;
 mod symmetric;
 mod tree;
 

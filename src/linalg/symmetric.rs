@@ -22,20 +22,15 @@
 //! checked ([`SymmetricFactors::factor`]); if it is too large, the caller uses [`super::Factors`].
 
 use super::check::{SolveError, largest};
+use super::executor::Executor;
 use super::order::order;
 use super::pattern::{Pattern, symbolic_view};
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::cholesky::ldlt::factor::LdltRegularization;
+use super::subtrees::{LowerHalf, Subtree};
+use super::supernodes::Supernodes;
 use faer::linalg::matmul::triangular::{BlockStructure, matmul};
-use faer::sparse::SparseColMatRef;
 use faer::sparse::linalg::SupernodalThreshold;
-use faer::sparse::linalg::cholesky::supernodal::{
-    SymbolicSupernodalCholesky, factorize_supernodal_numeric_ldlt,
-    factorize_supernodal_numeric_ldlt_scratch,
-};
 use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
-    factorize_symbolic_cholesky,
+    CholeskySymbolicParams, SymbolicCholeskyRaw, SymmetricOrdering, factorize_symbolic_cholesky,
 };
 use faer::{Accum, MatMut, MatRef, Par, Side};
 use std::sync::Arc;
@@ -48,7 +43,8 @@ pub struct SymmetricFactors {
     /// Pattern of the lower half in elimination order, and the source of each of its entries.
     pattern: Pattern,
     from: Vec<usize>,
-    symbolic: SymbolicCholesky<usize>,
+    l: Supernodes,
+    tree: Subtree,
     /// All unknowns in elimination order.
     order: Vec<usize>,
     /// The unknowns eliminated last, in order.
@@ -56,7 +52,6 @@ pub struct SymmetricFactors {
     /// Indices of the diagonal of `last` in the array of values.
     diagonal: Vec<usize>,
     factors: Vec<f64>,
-    memory: MemBuffer,
     values: Vec<f64>,
     /// Largest magnitude of these.
     size: f64,
@@ -93,20 +88,19 @@ impl SymmetricFactors {
             params,
         )
         .map_err(|_| SolveError::OutOfMemory)?;
-        let raw = supernodal(&symbolic);
-        let request = factorize_supernodal_numeric_ldlt_scratch::<usize, f64>(
-            raw,
-            Par::Seq,
-            Default::default(),
-        );
-        let rows = (0..raw.n_supernodes()).map(|s| raw.supernode(s).pattern().len());
+        let SymbolicCholeskyRaw::Supernodal(raw) = symbolic.raw() else {
+            unreachable!("the symbolic part must be supernodal")
+        };
+        let l = Supernodes::from_symbolic(raw);
+        let rows = (0..l.nodes.len()).map(|s| l.rows(s).len());
         let below = rows.max().unwrap_or(0);
         let diagonal = (n - last.len()..n)
             .map(|place| lower.slot(place, place).ok_or(SolveError::Singular))
             .collect::<Result<_, _>>()?;
         Ok(SymmetricFactors {
             factors: vec![0.0; symbolic.len_val()],
-            memory: MemBuffer::try_new(request).map_err(|_| SolveError::OutOfMemory)?,
+            tree: Subtree::new(&l)?,
+            l,
             values: vec![0.0; lower.entries()],
             size: 0.0,
             residual: vec![0.0; n],
@@ -118,7 +112,6 @@ impl SymmetricFactors {
             last: last.to_vec(),
             order,
             diagonal,
-            symbolic,
             pattern: lower,
             from,
             ready: false,
@@ -130,7 +123,12 @@ impl SymmetricFactors {
     ///
     /// # Errors
     /// [`SolveError::Singular`] if a pivot vanishes, or if terms grow so much that their round-off matters.
-    pub fn factor(&mut self, values: &[f64], shift: f64) -> Result<(), SolveError> {
+    pub fn factor(
+        &mut self,
+        values: &[f64],
+        shift: f64,
+        executor: &dyn Executor,
+    ) -> Result<(), SolveError> {
         self.ready = false;
         for (value, &k) in self.values.iter_mut().zip(&self.from) {
             *value = values[k];
@@ -139,22 +137,16 @@ impl SymmetricFactors {
             self.values[k] += shift;
         }
         self.size = largest(&self.values);
-        let symbolic = supernodal(&self.symbolic);
-        factorize_supernodal_numeric_ldlt(
-            &mut self.factors,
-            SparseColMatRef::new(symbolic_view(&self.pattern), &self.values),
-            LdltRegularization::default(),
-            symbolic,
-            Par::Seq,
-            MemStack::new(&mut self.memory),
-            Default::default(),
-        )
-        .map_err(|_| SolveError::Singular)?;
-        for s in 0..symbolic.n_supernodes() {
-            let node = EliminationNode::from_symbolic(symbolic, &self.factors, s);
-            let own = &mut self.pivots[node.start..node.start + node.width];
+        let matrix = LowerHalf {
+            pattern: &self.pattern,
+            values: &self.values,
+        };
+        self.tree
+            .factor(&self.l, matrix, &mut self.factors, executor)?;
+        for node in &self.l.nodes {
+            let own = &mut self.pivots[node.columns.clone()];
             for (k, pivot) in own.iter_mut().enumerate() {
-                *pivot = node.column(k)[k];
+                *pivot = node.column(&self.factors, k)[k];
             }
         }
         self.ready = f64::EPSILON * self.growth() <= BACKWARD_LIMIT * self.size;
@@ -176,10 +168,9 @@ impl SymmetricFactors {
         if !self.pivots.iter().any(negative) {
             return self.size;
         }
-        let symbolic = supernodal(&self.symbolic);
         let sums = &mut self.moved;
         sums.fill(0.0);
-        for column in columns(symbolic, &self.factors, 0) {
+        for column in self.l.columns(&self.factors, 0) {
             let size = column.pivot.abs();
             sums[column.place] += size;
             let rows = column.place + 1..column.place + 1 + column.own.len();
@@ -235,22 +226,21 @@ impl SymmetricFactors {
 
     /// Forward substitution L y = b in the first `count` columns, which also updates the later rows.
     fn forward(&mut self, count: usize) {
-        let symbolic = supernodal(&self.symbolic);
-        for s in 0..symbolic.n_supernodes() {
-            let node = EliminationNode::from_symbolic(symbolic, &self.factors, s);
-            let columns = count.saturating_sub(node.start).min(node.width);
+        for (s, node) in self.l.nodes.iter().enumerate() {
+            let (start, width, rows) = (node.columns.start, node.width(), self.l.rows(s));
+            let columns = count.saturating_sub(start).min(width);
             if columns == 0 {
                 break;
             }
-            let below = &mut self.below[..node.rows.len()];
+            let below = &mut self.below[..rows.len()];
             below.fill(0.0);
-            let own = &mut self.moved[node.start..node.start + node.width];
+            let own = &mut self.moved[node.columns.clone()];
             for k in 0..columns {
-                let (column, value) = (node.column(k), own[k]);
-                add(&mut own[k + 1..], -value, &column[k + 1..node.width]);
-                add(below, value, &column[node.width..]);
+                let (column, value) = (node.column(&self.factors, k), own[k]);
+                add(&mut own[k + 1..], -value, &column[k + 1..width]);
+                add(below, value, &column[width..]);
             }
-            for (&row, below) in node.rows.iter().zip(below) {
+            for (&row, below) in rows.iter().zip(below) {
                 self.moved[row] -= *below;
             }
         }
@@ -264,22 +254,20 @@ impl SymmetricFactors {
 
     /// Back substitution Lᵀ u = y in the first `count` columns, with known u in the others.
     fn backward(&mut self, count: usize) {
-        let symbolic = supernodal(&self.symbolic);
-        for s in (0..symbolic.n_supernodes()).rev() {
-            let node = EliminationNode::from_symbolic(symbolic, &self.factors, s);
-            let columns = count.saturating_sub(node.start).min(node.width);
+        for (s, node) in self.l.nodes.iter().enumerate().rev() {
+            let (start, width, rows) = (node.columns.start, node.width(), self.l.rows(s));
+            let columns = count.saturating_sub(start).min(width);
             if columns == 0 {
                 continue;
             }
-            let below = &mut self.below[..node.rows.len()];
-            for (below, &row) in below.iter_mut().zip(node.rows) {
+            let below = &mut self.below[..rows.len()];
+            for (below, &row) in below.iter_mut().zip(rows) {
                 *below = self.moved[row];
             }
-            let own = &mut self.moved[node.start..node.start + node.width];
+            let own = &mut self.moved[node.columns.clone()];
             for k in (0..columns).rev() {
-                let column = node.column(k);
-                let sum = dot(&column[node.width..], below)
-                    + dot(&column[k + 1..node.width], &own[k + 1..]);
+                let column = node.column(&self.factors, k);
+                let sum = dot(&column[width..], below) + dot(&column[k + 1..width], &own[k + 1..]);
                 own[k] -= sum;
             }
         }
@@ -322,7 +310,7 @@ impl SymmetricFactors {
         let (c, first) = (self.last.len(), self.inner());
         self.lower.fill(0.0);
         self.upper.fill(0.0);
-        for column in columns(supernodal(&self.symbolic), &self.factors, first) {
+        for column in self.l.columns(&self.factors, first) {
             let to = column.place - first;
             let own = (to + 1..to + 1 + column.own.len()).zip(column.own);
             let rest = column.rows.iter().map(|row| row - first);
@@ -352,84 +340,6 @@ impl SymmetricFactors {
     }
 }
 
-/// Columns of L with the same rows below them (a supernode).
-struct EliminationNode<'a> {
-    /// Index of the first column.
-    start: usize,
-    /// Number of columns.
-    width: usize,
-    /// The rows below the columns.
-    rows: &'a [usize],
-    values: &'a [f64],
-}
-
-impl<'a> EliminationNode<'a> {
-    fn from_symbolic(
-        symbolic: &'a SymbolicSupernodalCholesky<usize>,
-        factors: &'a [f64],
-        s: usize,
-    ) -> Self {
-        let node = symbolic.supernode(s);
-        let values = symbolic.col_ptr_for_val();
-        EliminationNode {
-            start: node.start(),
-            width: symbolic.supernode_end()[s] - node.start(),
-            rows: node.pattern(),
-            values: &factors[values[s]..values[s + 1]],
-        }
-    }
-
-    /// A column: the node's own rows, valid from the diagonal on, then the rows below.
-    fn column(&self, k: usize) -> &'a [f64] {
-        let height = self.width + self.rows.len();
-        &self.values[k * height..(k + 1) * height]
-    }
-}
-
-/// A column of L and its pivot.
-struct Column<'a> {
-    place: usize,
-    pivot: f64,
-    /// Entries of the node's own rows below the diagonal, and of `rows`.
-    own: &'a [f64],
-    below: &'a [f64],
-    rows: &'a [usize],
-}
-
-/// The columns from `start` on, in elimination order.
-fn columns<'a>(
-    symbolic: &'a SymbolicSupernodalCholesky<usize>,
-    factors: &'a [f64],
-    first: usize,
-) -> impl Iterator<Item = Column<'a>> {
-    let nodes = symbolic
-        .supernode_end()
-        .partition_point(|&end| end <= first);
-    (nodes..symbolic.n_supernodes()).flat_map(move |s| {
-        let node = EliminationNode::from_symbolic(symbolic, factors, s);
-        let (start, width, rows) = (node.start, node.width, node.rows);
-        (first.saturating_sub(start)..width).map(move |k| {
-            let (own, below) = node.column(k).split_at(width);
-            Column {
-                place: start + k,
-                pivot: own[k],
-                own: &own[k + 1..],
-                below,
-                rows,
-            }
-        })
-    })
-}
-
-fn supernodal(symbolic: &SymbolicCholesky<usize>) -> &SymbolicSupernodalCholesky<usize> {
-    match symbolic.raw() {
-        SymbolicCholeskyRaw::Supernodal(symbolic) => symbolic,
-        SymbolicCholeskyRaw::Simplicial(_) => {
-            unreachable!("the symbolic part must be supernodal")
-        }
-    }
-}
-
 /// y = y + a x.
 fn add(y: &mut [f64], a: f64, x: &[f64]) {
     for (y, x) in y.iter_mut().zip(x) {
@@ -455,6 +365,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::executor::SequentialExecutor;
     use nalgebra::{DMatrix, DVector};
 
     /// A symmetric matrix with the pattern of a plane grid, indefinite if `pull` is large.
@@ -485,7 +396,9 @@ mod tests {
             let (pattern, mut a) = grid(9, pull);
             let last: Vec<usize> = (0..81).filter(|i| i % 9 == 0 || i % 13 == 5).collect();
             let mut factors = SymmetricFactors::new(pattern.clone(), &last).unwrap();
-            factors.factor(&values(&pattern, &a), shift).unwrap();
+            factors
+                .factor(&values(&pattern, &a), shift, &SequentialExecutor)
+                .unwrap();
             last.iter().for_each(|&i| a[(i, i)] += shift);
             let c = last.len();
             let inverse = a.clone().try_inverse().unwrap();
@@ -510,12 +423,58 @@ mod tests {
         }
     }
 
+    /// Starts a thread for every first task.
+    struct Threads;
+
+    impl Executor for Threads {
+        fn join(&self, first: &mut (dyn FnMut() + Send), second: &mut (dyn FnMut() + Send)) {
+            std::thread::scope(|scope| {
+                scope.spawn(first);
+                second();
+            });
+        }
+    }
+
+    #[test]
+    fn factors_have_the_same_bits_on_one_thread_and_on_many() {
+        let side = 100;
+        let n = side * side;
+        let steps = [0, 1, side - 1, side, side + 1, 2 * side];
+        let entries = (0..n).flat_map(|i| steps.map(|step| (i, i + step)));
+        let entries = entries.filter(|&(_, j)| j < n).collect();
+        let pattern = Arc::new(Pattern::new(n, entries));
+        let value = |(k, (i, j)): (usize, (usize, usize))| {
+            let part = (k as f64).sin();
+            if i == j { 20.0 + part } else { part }
+        };
+        let values: Vec<f64> = pattern.iter().enumerate().map(value).collect();
+        let last: Vec<usize> = (0..side).collect();
+        let mut factors = SymmetricFactors::new(pattern, &last).unwrap();
+        assert!(factors.tree.is_split());
+        let b: Vec<f64> = (0..n).map(|i| (i as f64).cos()).collect();
+        let mut solve = |executor: &dyn Executor| {
+            let mut x = vec![0.0; n];
+            factors.factor(&values, 0.5, executor).unwrap();
+            factors.solve(&b, &mut x).unwrap();
+            (factors.factors.clone(), x)
+        };
+        assert!(solve(&SequentialExecutor) == solve(&Threads));
+    }
+
     #[test]
     fn growth_beyond_round_off_is_detected_when_factoring() {
         let pattern = Arc::new(Pattern::new(2, vec![(0, 0), (0, 1), (1, 1)]));
         let mut factors = SymmetricFactors::new(pattern, &[1]).unwrap();
-        assert!(factors.factor(&[-0.1, 1.0, 0.0], 0.0).is_ok());
-        assert!(factors.factor(&[-1e-9, 1.0, 0.0], 0.0).is_err());
+        assert!(
+            factors
+                .factor(&[-0.1, 1.0, 0.0], 0.0, &SequentialExecutor)
+                .is_ok()
+        );
+        assert!(
+            factors
+                .factor(&[-1e-9, 1.0, 0.0], 0.0, &SequentialExecutor)
+                .is_err()
+        );
     }
 
     #[test]
@@ -525,7 +484,9 @@ mod tests {
             let (pattern, a) = grid(9, pull);
             let last: Vec<usize> = (0..81).filter(|i| i % 9 == 0).collect();
             let mut factors = SymmetricFactors::new(pattern.clone(), &last).unwrap();
-            factors.factor(&values(&pattern, &a), 0.0).unwrap();
+            factors
+                .factor(&values(&pattern, &a), 0.0, &SequentialExecutor)
+                .unwrap();
             let mut pivots = vec![0.0; 81];
             factors.pivots(&mut pivots);
             let negative = pivots.iter().filter(|d| **d < 0.0).count();
@@ -541,10 +502,14 @@ mod tests {
     fn a_vanishing_pivot_is_detected() {
         let pattern = Arc::new(Pattern::new(2, vec![(0, 0), (0, 1), (1, 1)]));
         let mut factors = SymmetricFactors::new(pattern, &[]).unwrap();
-        let told = factors.factor(&[1e-30, 1.0, 0.0], 0.0).is_err()
+        let told = factors
+            .factor(&[1e-30, 1.0, 0.0], 0.0, &SequentialExecutor)
+            .is_err()
             || factors.solve(&[1.0, 2.0], &mut [0.0; 2]).is_err();
         assert!(told);
-        let singular = factors.factor(&[1.0, 2.0, 4.0], 0.0).is_err()
+        let singular = factors
+            .factor(&[1.0, 2.0, 4.0], 0.0, &SequentialExecutor)
+            .is_err()
             || factors.solve(&[1.0, 1.0], &mut [0.0; 2]).is_err();
         assert!(singular);
     }

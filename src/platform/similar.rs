@@ -2,6 +2,7 @@
 
 use crate::disk;
 use std::path::Path;
+use strsim::osa_distance;
 
 /// `; did you mean "beam.end"?` if a candidate is close enough to be a typo, else an empty string.
 pub fn did_you_mean<'a>(wrong: &str, candidates: impl IntoIterator<Item = &'a str>) -> String {
@@ -53,7 +54,9 @@ pub fn nearest<'a>(wrong: &str, candidates: impl IntoIterator<Item = &'a str>) -
             .max(1)
             .min(wrong.len().saturating_sub(1));
         let possible = wrong.len().max(right.len()) <= LONGEST && a.len().abs_diff(b.len()) <= most;
-        possible.then(|| distance(a, b)).filter(|far| *far <= most)
+        // Swapping two adjacent characters counts as one change.
+        let far = possible.then(|| osa_distance(&String::from_iter(a), &String::from_iter(b)));
+        far.filter(|far| *far <= most)
     };
     candidates
         .into_iter()
@@ -61,26 +64,6 @@ pub fn nearest<'a>(wrong: &str, candidates: impl IntoIterator<Item = &'a str>) -
         .min_by_key(|(far, _)| *far)
         .map(|(_, right)| right)
         .or(only)
-}
-
-/// Edit distance in which swapping two adjacent characters counts as one change.
-fn distance(a: &[char], b: &[char]) -> usize {
-    let mut rows = vec![(0..=b.len()).collect::<Vec<usize>>()];
-    for i in 1..=a.len() {
-        let mut row = vec![i];
-        for j in 1..=b.len() {
-            let same = usize::from(a[i - 1] != b[j - 1]);
-            let mut best = (rows[i - 1][j] + 1)
-                .min(row[j - 1] + 1)
-                .min(rows[i - 1][j - 1] + same);
-            if i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] {
-                best = best.min(rows[i - 2][j - 2] + 1);
-            }
-            row.push(best);
-        }
-        rows.push(row);
-    }
-    rows[a.len()][b.len()]
 }
 
 #[cfg(test)]
@@ -104,8 +87,6 @@ mod tests {
             Some("osc-inclined")
         );
         assert_eq!(nearest("osc-", ["osc-inclined", "osc-two6"]), None);
-        let chars = |text: &str| text.chars().collect::<Vec<_>>();
-        assert_eq!(distance(&chars("abcd"), &chars("abdc")), 1);
-        assert_eq!(distance(&[], &chars("abc")), 3);
+        assert_eq!(nearest("abdc", ["abcd"]), Some("abcd"));
     }
 }

@@ -11,8 +11,9 @@ use crate::format::error::{Fault, at, fault};
 use crate::format::spec::{History, Spec};
 use crate::shown;
 use std::collections::{HashMap, HashSet};
+use stickslip_core::Model;
 use stickslip_core::model::{
-    Body, BodyKind, Bond, Contact, Control, Form, Friction, Jumps, Linear, Model, Monitor,
+    Body, BodyKind, Bond, Contact, Control, Form, Friction, Jumps, Linear, Monitor,
     MonitorQuantity, Node, ReportedKind, Surface,
 };
 use stickslip_exchange::attach::Answer;

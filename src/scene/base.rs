@@ -9,7 +9,7 @@ use super::Scene;
 use super::compile::{Choices, Compiled, Groups, Loads, compile, renewed};
 use crate::format::error::at;
 use crate::format::{Spec, paths};
-use stickslip_core::model::Model;
+use stickslip_core::Model;
 
 /// A scene as written by its author, with data for changing it.
 #[derive(Debug, Clone)]

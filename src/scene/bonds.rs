@@ -5,7 +5,8 @@ use crate::format::contact_law::ContactLaw;
 use crate::format::spec::SlaveSpec;
 use crate::number::sig4;
 use std::collections::HashSet;
-use stickslip_core::model::{Contact, Model, Surface};
+use stickslip_core::Model;
+use stickslip_core::model::{Contact, Surface};
 use stickslip_core::words::counted;
 
 /// One line per contact law other than hard contact that a slave node has; empty without any.

@@ -8,11 +8,10 @@ use crate::number::sig6;
 use std::fmt;
 use stickslip_core::linear::estimate::Estimate;
 use stickslip_core::model::{
-    Beam, Body, BodyKind, Elastic, ElementKind, Form, Linear, Model, Solid, Surface,
+    Beam, Body, BodyKind, Elastic, ElementKind, Form, Linear, LinearSolver, Solid, Surface, Update,
 };
-use stickslip_core::model::{LinearSolver, Update};
-use stickslip_core::words;
 use stickslip_core::words::is_default;
+use stickslip_core::{Model, words};
 
 /// Size and cost of a scene. Displayed as a table, so that users can check whether the scene is what they meant.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,8 +1,8 @@
 //! Checks before a run whether double precision is sufficient for a scene.
 
-use stickslip_core::linear::norms::Norms;
 use stickslip_core::linear::sizes::expected_noise;
-use stickslip_core::model::{BodyKind, Model};
+use stickslip_core::model::BodyKind;
+use stickslip_core::{Model, Norms};
 
 /// Ratio of the expected round-off to the round-off found in runs.
 const GENEROUS: f64 = 10.0;

@@ -5,7 +5,7 @@ use crate::format::paths::Override;
 use crate::format::{Fault, SceneError, Spec, error, locate, paths};
 use crate::nodes::Names;
 use crate::{attached, import};
-use stickslip_core::model::Model;
+use stickslip_core::Model;
 use stickslip_exchange::attach::message;
 
 /// A scene that has been read and checked.

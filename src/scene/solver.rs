@@ -5,10 +5,8 @@
 
 use std::sync::Arc;
 use stickslip_core::executor::Executor;
-use stickslip_core::model::Model;
 use stickslip_core::step::cone_solver::ConeSolver;
-use stickslip_core::step::solver::Solver;
-use stickslip_core::step::stepper::Stepper;
+use stickslip_core::{Model, Solver, Stepper};
 
 /// Rayon's threads.
 struct Threads;

@@ -37,7 +37,7 @@ const NO_RUN: &str = "no run finished, so there is no reference; compare setting
 const FLAT: f64 = 1e-6;
 
 /// A work-precision chart of one scene.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Precision {
     /// The scene's name.
     pub scene: String,
@@ -478,14 +478,10 @@ impl Precision {
         let mut precision = Precision {
             scene: chart.scene.clone(),
             title: chart.title.clone(),
-            monitors: Vec::new(),
-            forces: Vec::new(),
-            uncertainty: [None; 2],
-            about: Vec::new(),
             series: series.collect(),
-            points: Vec::new(),
             cost: measure.cost,
             target: measure.target,
+            ..Precision::default()
         };
         if let Some(own) = own {
             all[own].point.reference = true;
@@ -626,16 +622,9 @@ mod tests {
     #[test]
     fn peers_are_further_series_and_change_the_front() {
         let mut chart = Precision {
-            scene: String::new(),
-            title: String::new(),
-            monitors: Vec::new(),
-            forces: Vec::new(),
-            uncertainty: [None; 2],
-            about: Vec::new(),
             series: vec!["own".to_owned()],
             points: vec![point(2.0, Some(1e-3))],
-            cost: Cost::Time,
-            target: None,
+            ..Precision::default()
         };
         let peer = Precision {
             series: vec!["peer".to_owned()],

@@ -84,14 +84,9 @@ pub fn read(
             charts.push(Precision {
                 scene: scene.to_owned(),
                 title: scene.to_owned(),
-                monitors: Vec::new(),
-                forces: Vec::new(),
-                uncertainty: [None; 2],
-                about: Vec::new(),
-                series: Vec::new(),
-                points: Vec::new(),
                 cost,
                 target,
+                ..Precision::default()
             });
         }
         let Some(chart) = charts.last_mut() else {

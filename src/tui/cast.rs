@@ -5,7 +5,7 @@
 
 use crate::app::App;
 use crate::screen;
-use crate::theme::Theme;
+use crate::theme::{Theme, terminal_number};
 use crate::view::View;
 use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::Rect;
@@ -167,28 +167,15 @@ fn sgr(cell: &Cell) -> String {
 
 /// The SGR code of a colour; `base` is 30 for the foreground and 40 for the background.
 fn colour(colour: Color, base: u8) -> Option<String> {
-    let dark = |k: u8| Some((base + k).to_string());
-    let light = |k: u8| Some((base + 60 + k).to_string());
     match colour {
         Color::Reset => None,
-        Color::Black => dark(0),
-        Color::Red => dark(1),
-        Color::Green => dark(2),
-        Color::Yellow => dark(3),
-        Color::Blue => dark(4),
-        Color::Magenta => dark(5),
-        Color::Cyan => dark(6),
-        Color::Gray => dark(7),
-        Color::DarkGray => light(0),
-        Color::LightRed => light(1),
-        Color::LightGreen => light(2),
-        Color::LightYellow => light(3),
-        Color::LightBlue => light(4),
-        Color::LightMagenta => light(5),
-        Color::LightCyan => light(6),
-        Color::White => light(7),
         Color::Indexed(k) => Some(format!("{};5;{k}", base + 8)),
         Color::Rgb(r, g, b) => Some(format!("{};2;{r};{g};{b}", base + 8)),
+        named => terminal_number(named).map(|number| {
+            // The second eight are the light ones.
+            let code = if number < 8 { base } else { base + 60 - 8 } + number;
+            code.to_string()
+        }),
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::debugger::Debugger;
 use crate::screen;
+use crate::theme::terminal_number;
 use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::Rect;
 use ratatui::style::{Color, Modifier};
@@ -177,22 +178,7 @@ impl Palette {
             Color::Reset => return None,
             Color::Rgb(r, g, b) => return Some((r, g, b)),
             Color::Indexed(number) => number,
-            Color::Black => 0,
-            Color::Red => 1,
-            Color::Green => 2,
-            Color::Yellow => 3,
-            Color::Blue => 4,
-            Color::Magenta => 5,
-            Color::Cyan => 6,
-            Color::Gray => 7,
-            Color::DarkGray => 8,
-            Color::LightRed => 9,
-            Color::LightGreen => 10,
-            Color::LightYellow => 11,
-            Color::LightBlue => 12,
-            Color::LightMagenta => 13,
-            Color::LightCyan => 14,
-            Color::White => 15,
+            named => terminal_number(named)?,
         };
         Some(match number {
             0..16 => self.named[usize::from(number)],

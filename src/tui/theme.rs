@@ -9,6 +9,34 @@ use ratatui::style::{Color, Modifier, Style};
 use stickslip_core::model::Mode;
 use stickslip_debugger::action::Colours;
 
+/// The 16 colours of a terminal, in the order of their numbers.
+const TERMINAL: [Color; 16] = [
+    Color::Black,
+    Color::Red,
+    Color::Green,
+    Color::Yellow,
+    Color::Blue,
+    Color::Magenta,
+    Color::Cyan,
+    Color::Gray,
+    Color::DarkGray,
+    Color::LightRed,
+    Color::LightGreen,
+    Color::LightYellow,
+    Color::LightBlue,
+    Color::LightMagenta,
+    Color::LightCyan,
+    Color::White,
+];
+
+/// The number of one of the terminal's 16 colours; `None` for any other.
+pub fn terminal_number(colour: Color) -> Option<u8> {
+    match colour {
+        Color::Indexed(number) => Some(number).filter(|number| *number < 16),
+        named => (0..16).find(|&number| TERMINAL[usize::from(number)] == named),
+    }
+}
+
 /// The styles of the screen.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Theme {

@@ -3,6 +3,7 @@
 use ratatui::buffer::{Buffer, Cell};
 use ratatui::style::{Color, Modifier};
 use std::fmt::Write;
+use stickslip_tui::theme::terminal_number;
 
 /// A row of the screen. Cells with the same style form one element of their width, so that columns stay aligned in every font;
 /// a character beyond ASCII, whose width differs between fonts, has its own element.
@@ -50,7 +51,8 @@ fn element(html: &mut String, classes: &str, columns: usize, text: &str) {
 /// The classes of a cell's style.
 fn classes(cell: &Cell) -> String {
     let mut classes: Vec<String> = Vec::new();
-    let colour = |ground: &str, colour: Color| name(colour).map(|name| format!("{ground}{name}"));
+    let colour =
+        |ground: &str, colour: Color| terminal_number(colour).map(|name| format!("{ground}{name}"));
     classes.extend(colour("f", cell.fg));
     classes.extend(colour("g", cell.bg));
     let modifiers = [
@@ -65,28 +67,4 @@ fn classes(cell: &Cell) -> String {
         .filter(|(own, _)| cell.modifier.contains(*own));
     classes.extend(set.map(|(_, name)| (*name).to_owned()));
     classes.join(" ")
-}
-
-/// The number of one of the terminal's 16 colours; themes use no others.
-fn name(colour: Color) -> Option<u8> {
-    Some(match colour {
-        Color::Black => 0,
-        Color::Red => 1,
-        Color::Green => 2,
-        Color::Yellow => 3,
-        Color::Blue => 4,
-        Color::Magenta => 5,
-        Color::Cyan => 6,
-        Color::Gray => 7,
-        Color::DarkGray => 8,
-        Color::LightRed => 9,
-        Color::LightGreen => 10,
-        Color::LightYellow => 11,
-        Color::LightBlue => 12,
-        Color::LightMagenta => 13,
-        Color::LightCyan => 14,
-        Color::White => 15,
-        Color::Indexed(number) if number < 16 => number,
-        _ => return None,
-    })
 }

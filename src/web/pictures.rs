@@ -3,9 +3,7 @@
 use serde::Serialize;
 use std::ops::ControlFlow;
 use std::sync::Arc;
-use stickslip_core::step::drive::Until;
-use stickslip_core::step::event::Outcome;
-use stickslip_core::step::state::Status;
+use stickslip_core::{Outcome, Status, Until};
 use stickslip_debugger::explain::failures;
 use stickslip_debugger::record::export::Origin;
 use stickslip_debugger::record::export::export_state::{ExportState, PicturePart, PictureRequest};

@@ -1,7 +1,7 @@
 //! The trace of a scene, to compare a browser's floating point with other systems.
 
 use std::ops::ControlFlow;
-use stickslip_core::step::drive::Until;
+use stickslip_core::Until;
 use stickslip_debugger::record::table::{trace_header, trace_rows};
 use stickslip_scene::Scene;
 use stickslip_scene::solver::solver;

@@ -2,12 +2,13 @@
 //!
 //! The scene is `two-blocks-pressed-sheared`. Of factorizations, assemblies and major iterations (those of one minor
 //! iteration) the least of one run counts, so that what else the machine does counts little; of minor iterations beyond the
-//! first the median, since they differ in size. All of a row are measured in the same process. A table, not a statistic:
-//! hence no harness.
+//! first the median, since they differ in size. All of a row are measured in the same process. A second table has a single body on
+//! one thread and on all. Tables, not statistics: hence no harness.
 
 use std::fs;
 use std::sync::Arc;
 use std::time::Instant;
+use stickslip::executor::{Executor, SequentialExecutor};
 use stickslip::fem::assembly::{Assembly, AssemblyMotion};
 use stickslip::fem::element::ElementOutput;
 use stickslip::linalg::{Pattern, SymmetricFactors};
@@ -46,10 +47,40 @@ fn main() {
         let scene = Scene::open(BLOCKS, &set).unwrap_or_else(|e| panic!("{e}"));
         row(&Arc::new(scene.model));
     }
+    println!();
+    println!(
+        "| one body: unknowns | threads | factorization ms, on one and all | assembly ms, on one and all | ratio |"
+    );
+    println!("|---|---|---|---|---|");
+    for refine in ["3", "6", "10"] {
+        let set = [("refine".to_owned(), refine.to_owned())];
+        let scene = Scene::open("hertz-cylinder-on-block", &set).unwrap_or_else(|e| panic!("{e}"));
+        let (a, f) = parts(&scene.model, Arc::new(SequentialExecutor));
+        let (b, g) = parts(&scene.model, Arc::new(Threads));
+        println!(
+            "| {} | {} | {:.1} {:.1} | {:.1} {:.1} | {:.2} |",
+            scene.model.dofs.equations,
+            rayon::current_num_threads(),
+            1e3 * f,
+            1e3 * g,
+            1e3 * a,
+            1e3 * b,
+            (a + f) / (b + g),
+        );
+    }
+}
+
+/// All threads of rayon's pool.
+struct Threads;
+
+impl Executor for Threads {
+    fn join(&self, first: &mut (dyn FnMut() + Send), second: &mut (dyn FnMut() + Send)) {
+        rayon::join(first, second);
+    }
 }
 
 fn row(model: &Arc<Model>) {
-    let (assembly, factorization) = parts(model);
+    let (assembly, factorization) = parts(model, Arc::new(SequentialExecutor));
     let mut stepper = Stepper::new(model.clone());
     let began = Instant::now();
     let (mut major, mut minors) = (f64::INFINITY, Vec::new());
@@ -90,9 +121,9 @@ fn row(model: &Arc<Model>) {
 }
 
 /// Seconds of one assembly and of one factorization of the bodies, the interface last, as the solver does it.
-fn parts(model: &Model) -> (f64, f64) {
+fn parts(model: &Model, executor: Arc<dyn Executor>) -> (f64, f64) {
     let (dofs, equations) = (&model.dofs, model.dofs.equations);
-    let mut assembly = Assembly::new(model);
+    let mut assembly = Assembly::with_executor(model, executor.clone());
     let mut entries = assembly.entries(dofs);
     entries.retain(|(row, column)| row <= column);
     let pattern = Arc::new(Pattern::new(equations, entries));
@@ -113,7 +144,7 @@ fn parts(model: &Model) -> (f64, f64) {
     let (mut force, mut size) = (zeros.clone(), zeros.clone());
     let (mut values, mut coupling) = (vec![0.0; pattern.entries()], vec![0.0; equations]);
     let (mut assembled, mut factored) = (f64::INFINITY, f64::INFINITY);
-    for _ in 0..5 {
+    for _ in 0..7 {
         let began = Instant::now();
         let moved = AssemblyMotion {
             u: &zeros,
@@ -130,7 +161,9 @@ fn parts(model: &Model) -> (f64, f64) {
         assembly.assemble(dofs, moved, out);
         assembled = assembled.min(began.elapsed().as_secs_f64());
         let began = Instant::now();
-        factors.factor(&values, 1.0).expect("a stiffness");
+        factors
+            .factor(&values, 1.0, &*executor)
+            .expect("a stiffness");
         factored = factored.min(began.elapsed().as_secs_f64());
     }
     (assembled, factored)

@@ -26,6 +26,8 @@ fn a_run_has_the_same_bits_on_one_thread_and_on_two() {
         (BLOCKS, "settings.solver=condensed", 0),
         // Large enough for the bodies to be worked on side by side.
         (BLOCKS, "refine=5", 0),
+        // One body, whose elements and subtrees are worked on side by side.
+        ("hertz-cylinder-on-block", "refine=3", 0),
         ("osc-inclined-cantilever", "settings.minors=30", 3),
     ] {
         let written = THREADS.map(|threads| {

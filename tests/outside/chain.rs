@@ -23,6 +23,8 @@ pub struct Chain {
     closed: bool,
     /// Straight on past both ends; one element of two nodes.
     endless: bool,
+    /// From these ξ of the first and of the last element on, only a node that is pressed is over the chain.
+    held: [f64; 2],
 }
 
 /// A material point of a chain.
@@ -74,6 +76,7 @@ impl Chain {
         Chain {
             closed: elements.len() > 1 && first == last,
             endless,
+            held: [-1.0, 1.0],
             elements,
         }
     }
@@ -116,6 +119,7 @@ impl Chain {
             elements: (0..last).map(piece).collect(),
             closed,
             endless: false,
+            held: [-1.0, 1.0],
         }
     }
 
@@ -125,7 +129,34 @@ impl Chain {
             elements,
             closed: false,
             endless: false,
+            held: [-1.0, 1.0],
         }
+    }
+
+    /// The chain with its first and its last element as long as these parts of ξ on the same curve.
+    pub fn extended(mut self, [before, behind]: [f64; 2]) -> Self {
+        let last = self.elements.len() - 1;
+        self.held = match last {
+            0 => [before, -behind].map(|half| half / (2.0 + before + behind)),
+            _ => [before / (2.0 + before), -behind / (2.0 + behind)],
+        };
+        self.held = [self.held[0] - 1.0, self.held[1] + 1.0];
+        for (k, element) in self.elements.iter_mut().enumerate() {
+            let start = if k == 0 { -1.0 - before } else { -1.0 };
+            let end = if k == last { 1.0 + behind } else { 1.0 };
+            let m = element.len();
+            let xi = |i: usize| start + (end - start) * i as f64 / (m - 1) as f64;
+            if before + behind > 0.0 {
+                *element = (0..m).map(|i| sum(element, &shape(m, xi(i)).0)).collect();
+            }
+        }
+        self
+    }
+
+    /// Whether only a node that is pressed is over the chain there.
+    pub fn only_holds(&self, place: Place) -> bool {
+        place.element == 0 && place.xi < self.held[0]
+            || place.element + 1 == self.elements.len() && place.xi > self.held[1]
     }
 
     /// Number of elements.

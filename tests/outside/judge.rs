@@ -13,7 +13,7 @@
 //! slip, and what loads it further turns its force towards φ + h, at which it slides on along the other side. The cohesion c is
 //! that of one side, or of the other. On a convex vertex nothing stays that slid there, but at the limit of one of the sides.
 
-use super::chain::{At, Chain, Place, Point, Seen as Sight, cross, dot, norm};
+use super::chain::{At, Chain, Place, Point, Seen as Sight, Site, cross, dot, norm};
 use super::give::Gives;
 use std::f64::consts::FRAC_PI_2;
 use stickslip::model::{Friction, Model, Surface};
@@ -152,7 +152,8 @@ pub fn judge(
 fn chains(model: &Model, state: &Seen) -> Vec<Chain> {
     let chain = |s: &Surface| {
         if s.smooth.is_empty() {
-            return Chain::new(&s.elements, &state.positions, s.endless);
+            let chain = Chain::new(&s.elements, &state.positions, s.endless);
+            return chain.extended(s.past_ends);
         }
         // Of the pieces only the nodes that they go through are taken, one after the other.
         let pieces = s.elements.iter().zip(&s.smooth);
@@ -162,7 +163,7 @@ fn chains(model: &Model, state: &Seen) -> Vec<Chain> {
         let at: Vec<_> = walk.iter().map(|&n| state.positions[n]).collect();
         let knots: Vec<_> = walk.iter().map(|&n| model.nodes[n].at).collect();
         let closed = walk.len() > 2 && walk.first() == walk.last();
-        Chain::smooth(&at, &knots, closed)
+        Chain::smooth(&at, &knots, closed).extended(s.past_ends)
     };
     model.surfaces.iter().map(chain).collect()
 }
@@ -236,7 +237,7 @@ type On = (usize, Place);
 impl Sides<'_> {
     fn judge(&self, node: &Node) -> Found {
         let (length, force) = (self.scales.length, self.scales.force);
-        let gap = self.gap(self.now, node.now);
+        let gap = self.gap(self.now, node.now, node.force != [0.0; 2]);
         let pressed = norm(node.force) > FORCE * force;
         let off = match gap {
             Some(gap) if pressed => gap.abs(),
@@ -263,11 +264,20 @@ impl Sides<'_> {
         best.unwrap_or_default()
     }
 
-    /// Signed distance of the closest of all surfaces; `None` if that is an end, past which the node lies.
-    fn gap(&self, chains: &[Chain], p: Point) -> Option<f64> {
+    /// Signed distance of the closest of all surfaces; `None` if that is an end, past which the node lies, or where only a node
+    /// that is pressed is over it.
+    fn gap(&self, chains: &[Chain], p: Point, pressed: bool) -> Option<f64> {
         let mut closest: Option<(f64, Option<f64>)> = None;
         for &surface in self.surfaces {
             let (distance, gap) = match chains[surface].see(p) {
+                Sight::Over(
+                    Site {
+                        at: At::Inside(place),
+                        distance,
+                        ..
+                    },
+                    _,
+                ) if !pressed && chains[surface].only_holds(place) => (distance, None),
                 Sight::Over(site, gap) => (site.distance, Some(gap)),
                 Sight::Beyond(site, by) => (
                     site.distance,

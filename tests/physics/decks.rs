@@ -1,6 +1,7 @@
 //! Decks of CalculiX: what they mean is what a scene written by hand means, or what a closed form says.
 
 use crate::common::{Run, run, scene};
+use crate::outside::trial::{End, attempt};
 use stickslip::scene::Scene;
 
 fn solved(name: &str) -> Run {
@@ -100,6 +101,57 @@ fn a_tie_holds_in_tension_as_if_it_were_one_body() {
     );
     near(last(&run, "u_y 13"), 0.06, 1e-9);
     near(last(&run, "contact y"), -3.0, 1e-9);
+}
+
+/// The nodes at the edges start at the ends of the master and move past them. CalculiX 2.20 has 4.949201 and 117.2592.
+#[test]
+fn blocks_that_end_at_the_same_edges_stay_in_contact_there() {
+    let name = "tests/decks/flush-blocks.inp";
+    let run = solved(name);
+    near(last(&run, "contact x"), -4.949201, 1e-3);
+    near(last(&run, "contact y"), 117.2592, 1e-3);
+}
+
+/// Without friction a node that is past the end bulges out by 1e-5 while it touches, and would be freed and caught in turn.
+#[test]
+fn a_node_that_starts_at_an_end_stays_or_leaves_and_breaks_no_law() {
+    let text = r#"(
+        title: "Two blocks that end at the same edges",
+        nodes: [
+            Block(id: "low", corners: [(0.0, 0.0), (1.0, 1.0)], elements: (4, 4), element: quad4),
+            Block(id: "up", corners: [(0.0, 1.0), (1.0, 2.0)], elements: (6, 6), element: quad4),
+        ],
+        materials: [Elastic(id: "m", E: 1000.0, nu: 0.3)],
+        bodies: [Solid(id: "low", mesh: "low", material: "m"), Solid(id: "up", mesh: "up", material: "m")],
+        surfaces: [(id: "low", along: "low.top", past_ends: 0.001)],
+        slaves: [(nodes: ["up.bottom"], on: ["low"])],
+        friction: (angle: 0.0),
+        supports: [(node: "low.bottom", fix: [x, y])],
+        loads: [
+            Displacement(node: "up.top", component: y, value: -0.001),
+            Displacement(node: "up.top", component: x, value: 0.0003),
+        ],
+        history: (path: [0.0, 1.0], increment: 0.25),
+        monitors: [(name: "f_y", of: Contact(component: y))],
+    )"#;
+    // With the longer margin the node still touches in the end, so the force is larger.
+    let [left, kept, _] =
+        [("0.001", "false"), ("0.002", "false"), ("0.001", "true")].map(|(past_ends, smooth)| {
+            let set = [
+                ("surfaces.low.past_ends", past_ends),
+                ("surfaces.low.smooth", smooth),
+            ];
+            let set = set.map(|(path, value)| (path.to_owned(), value.to_owned()));
+            let scene = Scene::from_text("t.ron", text, &set).unwrap_or_else(|e| panic!("{e}"));
+            let trial = attempt(&scene);
+            assert_eq!(
+                (trial.end, trial.wrong),
+                (End::Finished, Vec::new()),
+                "{past_ends} {smooth}"
+            );
+            last(&run(&scene), "f_y")
+        });
+    assert!(kept > 1.01 * left, "{kept} {left}");
 }
 
 /// Without the post the tip goes down by F l^3 / (3 E I) + P a^2 (3 l - a) / (6 E I) and, with shear, (F l + P a) / GA.

@@ -375,6 +375,13 @@ fn each_fault_has_one_message_with_its_place() {
             7,
             "an endless surface is already smooth",
         ),
+        (
+            "endless: true",
+            "endless: true, past_ends: 0.1",
+            7,
+            "an endless surface has no ends",
+        ),
+        ("endless: true", "past_ends: 1.5", 7, "between 0 and 1"),
         ("f_n: 0.0", "f_n: inf", 8, "must be a finite number"),
         (
             "surfaces: [(id: \"f\", along: \"f\"",

@@ -4,7 +4,7 @@ use super::report::{Outcome, fails, good, not_offered};
 use super::steps::difference;
 use super::trial::{Trial, at, is_last};
 use serde_json::Value;
-use stickslip_core::model::Mode;
+use stickslip_core::Mode;
 use stickslip_core::words::counted;
 use stickslip_debugger::recorded::fault::Fault;
 use stickslip_exchange::attach::message::{EndedLevel, Restore, State};

@@ -3,7 +3,7 @@
 use super::report::{Outcome, fails, good, not_offered};
 use super::trial::{Trial, at, is_last};
 use serde_json::Value;
-use stickslip_core::model::Mode;
+use stickslip_core::Mode;
 use stickslip_core::words::counted;
 use stickslip_debugger::explain::names::{self, MODES};
 use stickslip_debugger::recorded::fault::Fault;

@@ -3,17 +3,16 @@
 
 use super::report::{Outcome, Report, fails, good, not_tried};
 use super::trial::{Trial, millis};
-use stickslip_core::model::{Mode, Model};
 use stickslip_core::step::judged::ALLOWED;
+use stickslip_core::step::state::State as OurState;
 use stickslip_core::words::counted;
+use stickslip_core::{Mode, Model, Position};
 use stickslip_debugger::explain::names;
 use stickslip_debugger::recorded::decode::WireFrame;
 use stickslip_debugger::recorded::fault::Fault;
 use stickslip_scene::shown;
 
 use std::time::Instant;
-use stickslip_core::step::event::Position;
-use stickslip_core::step::state::State as OurState;
 use stickslip_exchange::attach::message::{ContactResult, EndedLevel, Scene, State};
 use stickslip_exchange::attach::{Answer, Request};
 

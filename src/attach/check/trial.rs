@@ -6,7 +6,7 @@ use serde_json::Value;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
-use stickslip_core::model::Mode;
+use stickslip_core::Mode;
 use stickslip_debugger::recorded::fault::Fault;
 use stickslip_debugger::recorded::log::Log;
 use stickslip_exchange::attach::message::{ContactResult, EndedLevel, Hello, Id, Scene, State};

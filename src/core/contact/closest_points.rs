@@ -113,7 +113,7 @@ fn minima(
         intervals(element.degree()),
     );
     let at = |k: usize| {
-        if element.is_smooth() {
+        if !element.is_plain() {
             let xi = node(count + 1, k);
             return (xi, slope(&places, point, &element.shape(xi)));
         }
@@ -218,6 +218,7 @@ mod tests {
             elements,
             rigid: true,
             endless,
+            past_ends: [0.0; 2],
             smooth: Vec::new(),
             gives: Vec::new(),
         }]

@@ -1,5 +1,6 @@
 //! An element of a master surface as a curve: the Lagrange curve through its nodes, or its piece of a smooth chain
-//! ([`super::smooth`]).
+//! ([`super::smooth`]). The first and the last element may extend past their nodes; ξ = ±1 is then beyond the node, on the same
+//! curve.
 
 use crate::contact::smooth;
 use crate::fem::lagrange::{self, MAX_NODES, Shape};
@@ -16,20 +17,37 @@ pub struct SurfaceElement<'a> {
     /// The nodes that its curve depends on.
     pub nodes: &'a [usize],
     piece: Option<&'a Piece>,
+    /// ξ of the curve at ξ = 0 of the element, and its derivative; 0 and 1 unless the element extends past a node.
+    middle: f64,
+    scale: f64,
 }
 
 impl<'a> SurfaceElement<'a> {
     /// Element `number` of a surface.
     pub fn from_surface(surface: &'a Surface, number: usize) -> Self {
+        let [mut before, mut behind] = surface.past_ends;
+        before = if number == 0 { before } else { 0.0 };
+        behind = if number + 1 == surface.elements.len() {
+            behind
+        } else {
+            0.0
+        };
         SurfaceElement {
             nodes: &surface.elements[number],
             piece: surface.smooth.get(number),
+            middle: 0.5 * (behind - before),
+            scale: 1.0 + 0.5 * (before + behind),
         }
     }
 
     /// The Lagrange curve through these nodes.
     pub fn lagrange(nodes: &'a [usize]) -> Self {
-        SurfaceElement { nodes, piece: None }
+        SurfaceElement {
+            nodes,
+            piece: None,
+            middle: 0.0,
+            scale: 1.0,
+        }
     }
 
     /// All elements of a surface.
@@ -39,10 +57,21 @@ impl<'a> SurfaceElement<'a> {
 
     /// The functions N_i at ξ, with two derivatives.
     pub fn shape(&self, xi: f64) -> Shape {
-        match self.piece {
-            Some(piece) => smooth::shape(piece, xi),
-            None => lagrange::shape(self.nodes.len(), xi),
+        let along = self.along(xi);
+        let s = match self.piece {
+            Some(piece) => smooth::shape(piece, along),
+            None => lagrange::shape(self.nodes.len(), along),
+        };
+        Shape {
+            n: s.n,
+            d: s.d.map(|d| d * self.scale),
+            dd: s.dd.map(|dd| dd * self.scale * self.scale),
         }
+    }
+
+    /// ξ of the curve.
+    fn along(&self, xi: f64) -> f64 {
+        self.middle + self.scale * xi
     }
 
     /// dN_i/dξ alone.
@@ -53,10 +82,12 @@ impl<'a> SurfaceElement<'a> {
 
     /// The same at several ξ.
     pub fn slopes_at<const COUNT: usize>(&self, xi: [f64; COUNT]) -> [[f64; MAX_NODES]; COUNT] {
-        match self.piece {
-            Some(piece) => xi.map(|xi| smooth::shape(piece, xi).d),
-            None => lagrange::slopes(self.nodes.len(), xi),
-        }
+        let along = xi.map(|xi| self.along(xi));
+        let slopes = match self.piece {
+            Some(piece) => along.map(|xi| smooth::shape(piece, xi).d),
+            None => lagrange::slopes(self.nodes.len(), along),
+        };
+        slopes.map(|slopes| slopes.map(|d| d * self.scale))
     }
 
     /// The node where it begins.
@@ -72,9 +103,17 @@ impl<'a> SurfaceElement<'a> {
         }
     }
 
-    /// Whether it is a piece of a smooth chain.
-    pub fn is_smooth(&self) -> bool {
-        self.piece.is_some()
+    /// Whether only nodes that touch are still over the surface at ξ: past the middle of what extends beyond a node. A node that
+    /// bulges past an end is then not freed, draws back, and touches again.
+    pub fn only_holds(&self, xi: f64) -> bool {
+        let (along, both) = (self.along(xi), self.scale - 1.0);
+        let [before, behind] = [both - self.middle, both + self.middle];
+        both > 0.0 && (along < -1.0 - 0.5 * before || along > 1.0 + 0.5 * behind)
+    }
+
+    /// Whether its curve is the Lagrange curve from its first to its last node.
+    pub fn is_plain(&self) -> bool {
+        self.piece.is_none() && self.scale == 1.0
     }
 
     /// Degree of its curve in ξ.
@@ -87,14 +126,13 @@ impl<'a> SurfaceElement<'a> {
 
     /// Passes each start value ξ of a search for the closest point, equally spaced from −1 to 1, with its N_i to `look`.
     pub fn samples(&self, mut look: impl FnMut(f64, &[f64; MAX_NODES])) {
-        match self.piece {
-            Some(piece) => (0..SAMPLES).for_each(|k| {
+        if self.is_plain() {
+            let table = lagrange::samples(self.nodes.len());
+            table.iter().for_each(|(xi, n)| look(*xi, n));
+        } else {
+            for k in 0..SAMPLES {
                 let xi = lagrange::node(SAMPLES, k);
-                look(xi, &smooth::shape(piece, xi).n);
-            }),
-            None => {
-                let table = lagrange::samples(self.nodes.len());
-                table.iter().for_each(|(xi, n)| look(*xi, n));
+                look(xi, &self.shape(xi).n);
             }
         }
     }
@@ -104,6 +142,7 @@ impl<'a> SurfaceElement<'a> {
     pub fn bulge(&self, sides: [f64; 2]) -> [f64; 2] {
         let by = |share: f64| sides.map(|side| share * side);
         match (self.piece, self.nodes.len()) {
+            _ if self.scale != 1.0 => [BULGE * (sides[0] + sides[1]); 2],
             (None, 2) => [0.0; 2],
             (None, 3) => by(0.126),
             (None, 4) => by(0.316),

@@ -197,7 +197,13 @@ impl Judge {
         };
         let over = |feet: &[ClosestPoint], point: [f64; 2]| {
             let mut feet = feet.iter();
-            feet.find(|foot| !is_past_end(foot, point, seen)).copied()
+            feet.find(|foot| {
+                let surface = &seen.surfaces[foot.spot.surface];
+                let element = SurfaceElement::from_surface(surface, foot.spot.element);
+                let is_over = pressed || !element.only_holds(foot.spot.xi);
+                is_over && !is_past_end(foot, point, seen)
+            })
+            .copied()
         };
         let mut foot = over(&self.feet, point);
         let mut given = 0.0;

@@ -7,7 +7,7 @@ use crate::model::{Friction, InitialState, Mode, Settings, SlipCount, Sticking};
 use serde::{Deserialize, Serialize};
 
 /// A slave node between two minor iterations.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct ContactState {
     /// Mode of the next minor iteration.
     pub mode: Mode,
@@ -69,7 +69,6 @@ impl ContactState {
     pub fn new(mode: Mode, brought: &InitialState) -> Self {
         ContactState {
             mode,
-            forced: Forced::No,
             f_n: brought.f_n,
             f_t: brought.f_t,
             t_max: brought.t_max,
@@ -79,17 +78,10 @@ impl ContactState {
                 brought.t_max.signum()
             },
             slip: brought.slip,
-            anchor: None,
-            kept: false,
             drift: brought.slip,
-            stretched: 0.0,
             ratio: brought.ratio,
-            travel: 0.0,
-            spot: None,
-            corner: None,
-            second: None,
-            left: None,
             normal: [0.0, 1.0],
+            ..Self::default()
         }
     }
 

@@ -13,6 +13,7 @@
 
 use crate::contact::corner;
 use crate::contact::crossing;
+use crate::contact::element::SurfaceElement;
 use crate::contact::facing::{MOST, faced, is_piece};
 use crate::contact::point_force;
 use crate::contact::projection::{
@@ -75,12 +76,12 @@ impl Ground<'_> {
         if !slave.bond.is_hard() || slave.overlap > 0.0 {
             // Compliant bonds and overlaps transmit forces across a distance: such nodes are not held in corners, and the law of a
             // single side applies.
-            node.spot = self.find(slave, at, previous);
+            node.spot = self.find(node.mode, slave, at, previous);
         } else if self.stays_in_corner(node, friction) {
             is_released = self.release(node, friction);
         } else {
             (node.corner, node.second) = (None, None);
-            node.spot = self.find(slave, at, previous);
+            node.spot = self.find(node.mode, slave, at, previous);
             if !was_held {
                 self.cross(node, previous);
             }
@@ -137,6 +138,7 @@ impl Ground<'_> {
     /// S* of a node on the surfaces that it may touch; `previous` is S* of the last major iteration.
     fn find(
         &self,
+        mode: Mode,
         slave: &Contact,
         at: [f64; 2],
         previous: Option<SurfacePoint>,
@@ -145,8 +147,13 @@ impl Ground<'_> {
         let on = faced(slave, self.surfaces, self.positions, &mut room);
         let previous = previous.filter(|spot| on.contains(&spot.surface));
         let spot = project(at, self.surfaces, on, self.positions, previous)?;
+        let surface = &self.surfaces[spot.surface];
+        let element = SurfaceElement::from_surface(surface, spot.element);
+        if mode == Mode::Free && element.only_holds(spot.xi) {
+            return None;
+        }
         // A node that presses on an element with local flexibility penetrates by the local deflection.
-        let gives = point_force::of(&self.surfaces[spot.surface], spot).is_some();
+        let gives = point_force::of(surface, spot).is_some();
         let touches = slave.bond.is_hard() && slave.overlap == 0.0 && !gives;
         Some(match touches {
             true => spot,

@@ -1,8 +1,8 @@
 //! Assembles the bodies' internal forces and tangent stiffness (the K_s and K_m of eqn 5).
 //!
 //! The position of every entry of every element matrix is found once; assembly then only adds. Bodies with separate ranges of
-//! entries are assembled in parallel ([`Executor`]). Each element adds to the same entries in the same order, independent of the
-//! executor.
+//! entries are assembled in parallel ([`Executor`]), and so are the responses of many elements of one body. Each element adds to the
+//! same entries in the same order, independent of the executor.
 
 use crate::executor::{Executor, SequentialExecutor};
 use crate::fem::beam::{self, Section};
@@ -18,6 +18,11 @@ use crate::model::Model;
 use crate::model::{Beam, Body, BodyKind, Dofs, Solid, SolidElement, Truss};
 use std::ops::Range;
 use std::sync::Arc;
+
+/// A group of at least `MANY` elements is computed in batches of `BATCH` elements, of which `TOGETHER` are computed by one thread.
+const MANY: usize = 1000;
+const BATCH: usize = 128;
+const TOGETHER: usize = 16;
 
 /// An element with its positions in the system.
 struct AssembledElement {
@@ -49,13 +54,15 @@ pub struct Assembly {
     memory: Vec<f64>,
 }
 
-/// Workspace for the largest element.
+/// Workspace for the largest element, and the response of the last one.
 #[derive(Clone, Default)]
 struct Workspace {
     force: Vec<f64>,
     tangent: Vec<f64>,
     u: Vec<f64>,
     before: Vec<f64>,
+    /// Whether the element has a response.
+    answers: bool,
 }
 
 /// Elements that are assembled independently.
@@ -63,7 +70,8 @@ struct Group {
     elements: Range<usize>,
     /// First degree of freedom, entry and equation of the group.
     first: ScatterMap,
-    room: Workspace,
+    /// One for each element of a batch.
+    rooms: Vec<Workspace>,
 }
 
 /// Start indices of degrees of freedom, entries of the stiffness, and equations.
@@ -224,6 +232,10 @@ impl Assembly {
         self.half = half;
         let groups = self.groups_of(dofs, pattern, parts);
         self.groups = groups.unwrap_or_else(|| vec![self.whole()]);
+        for group in &mut self.groups {
+            let many = group.elements.len() >= MANY;
+            group.rooms = vec![self.room.clone(); if many { BATCH } else { 1 }];
+        }
         for placed in &mut self.elements {
             placed.bind(dofs, pattern, half);
         }
@@ -237,7 +249,7 @@ impl Assembly {
         Group {
             elements: 0..self.elements.len(),
             first: ScatterMap::default(),
-            room: self.room.clone(),
+            rooms: Vec::new(),
         }
     }
 
@@ -268,7 +280,7 @@ impl Assembly {
                         slot: pattern.block_start(start),
                         equation: start,
                     },
-                    room: self.room.clone(),
+                    rooms: Vec::new(),
                 });
             }
             let group = groups.last_mut()?;
@@ -315,19 +327,27 @@ impl Assembly {
     pub fn resist(&mut self, moved: AssemblyMotion<'_>, force: &mut [f64], size: &mut [f64]) {
         force.fill(0.0);
         size.fill(0.0);
-        for placed in &self.elements {
-            let n = placed.dofs.len();
-            let room = &mut self.room;
-            let (u, before) = (&mut room.u[..n], &mut room.before[..n]);
-            let (own, tangent) = (&mut room.force[..n], &mut room.tangent[..n * n]);
-            let past = placed.gather_all(&moved, u, before);
-            own.fill(0.0);
-            let answers = placed.element.resist(&past, u, own, tangent);
-            for (&d, own) in placed.dofs.iter().zip(&*own) {
+        let compute = |placed: &AssembledElement, room: &mut Workspace| {
+            room.compute(placed, &moved, |past, u, force, tangent| {
+                placed.element.resist(past, u, force, tangent)
+            });
+        };
+        let mut add = |placed: &AssembledElement, room: &Workspace| {
+            for (&d, own) in placed.dofs.iter().zip(&room.force) {
                 // No finite force is in balance if an element has no response.
-                force[d] += if answers { *own } else { f64::INFINITY };
-                size[d] += if answers { own.abs() } else { 0.0 };
+                force[d] += if room.answers { *own } else { f64::INFINITY };
+                size[d] += if room.answers { own.abs() } else { 0.0 };
             }
+        };
+        for group in &mut self.groups {
+            let elements = &self.elements[group.elements.clone()];
+            in_batches(
+                &*self.executor,
+                elements,
+                &mut group.rooms,
+                &compute,
+                &mut add,
+            );
         }
         for matrix in &self.matrices {
             matrix.resist(moved.u, force, size);
@@ -338,14 +358,13 @@ impl Assembly {
     pub fn couple(&mut self, dofs: &Dofs, moved: AssemblyMotion<'_>, coupling: &mut [f64]) {
         coupling.fill(0.0);
         for placed in self.elements.iter().filter(|p| p.held) {
-            let n = placed.dofs.len();
             let room = &mut self.room;
-            let (u, before) = (&mut room.u[..n], &mut room.before[..n]);
-            let (force, tangent) = (&mut room.force[..n], &mut room.tangent[..n * n]);
-            let past = placed.gather_all(&moved, u, before);
-            force.fill(0.0);
-            tangent.fill(0.0);
-            if placed.element.add(&past, u, force, tangent) {
+            room.compute(placed, &moved, |past, u, force, tangent| {
+                tangent.fill(0.0);
+                placed.element.add(past, u, force, tangent)
+            });
+            if room.answers {
+                let tangent = &mut room.tangent[..placed.dofs.len().pow(2)];
                 placed.element.mirror(tangent);
                 placed.couple(dofs, tangent, moved.step, coupling, 0);
             }
@@ -401,39 +420,85 @@ impl AssemblyWork<'_> {
     }
 
     fn group(self, group: &mut Group, sums: &mut AssemblySums<'_>) {
-        let Workspace {
-            force,
-            tangent,
-            u,
-            before,
-        } = &mut group.room;
-        let AssemblyMotion { step, history, .. } = self.moved;
-        for placed in &self.elements[group.elements.clone()] {
+        let compute = |placed: &AssembledElement, room: &mut Workspace| {
+            room.compute(placed, &self.moved, |past, u, force, tangent| {
+                tangent.fill(0.0);
+                let answers = placed.element.add(past, u, force, tangent);
+                if answers && (placed.held || !self.half) {
+                    placed.element.mirror(tangent);
+                }
+                answers
+            });
+        };
+        let mut add = |placed: &AssembledElement, room: &Workspace| {
+            if !room.answers {
+                return placed.give_up(sums);
+            }
             let n = placed.dofs.len();
-            let (u, before) = (&mut u[..n], &mut before[..n]);
-            let (force, tangent) = (&mut force[..n], &mut tangent[..n * n]);
-            placed.gather(self.moved.u, u);
-            force.fill(0.0);
-            tangent.fill(0.0);
-            let history = &history[placed.history.clone()];
-            if !history.is_empty() {
-                placed.gather(self.moved.before, before);
-            }
-            let past = Previous { u: before, history };
-            if !placed.element.add(&past, u, force, tangent) {
-                placed.give_up(sums);
-                continue;
-            }
-            if placed.held || !self.half {
-                placed.element.mirror(tangent);
-            }
-            placed.scatter(force, tangent, sums);
+            let tangent = &room.tangent[..n * n];
+            placed.scatter(&room.force[..n], tangent, sums);
             if placed.held {
-                let first = sums.first.equation;
+                let (step, first) = (self.moved.step, sums.first.equation);
                 placed.couple(self.dofs, tangent, step, sums.out.coupling, first);
             }
-        }
+        };
+        let elements = &self.elements[group.elements.clone()];
+        in_batches(
+            self.executor,
+            elements,
+            &mut group.rooms,
+            &compute,
+            &mut add,
+        );
     }
+}
+
+/// Computes all elements, as many at the same time as there are rooms, and adds each in order.
+fn in_batches(
+    executor: &dyn Executor,
+    elements: &[AssembledElement],
+    rooms: &mut [Workspace],
+    compute: &(dyn Fn(&AssembledElement, &mut Workspace) + Sync),
+    add: &mut (dyn FnMut(&AssembledElement, &Workspace) + Send),
+) {
+    let mut all = || {
+        for batch in elements.chunks(rooms.len()) {
+            let rooms = &mut rooms[..batch.len()];
+            side_by_side(executor, batch, rooms, compute);
+            batch
+                .iter()
+                .zip(&*rooms)
+                .for_each(|(placed, room)| add(placed, room));
+        }
+    };
+    if elements.len() >= MANY {
+        // The batches are short, so the executor's threads are entered only once.
+        executor.join(&mut all, &mut || {});
+    } else {
+        all();
+    }
+}
+
+/// Computes elements, some on each thread.
+fn side_by_side(
+    executor: &dyn Executor,
+    elements: &[AssembledElement],
+    rooms: &mut [Workspace],
+    compute: &(dyn Fn(&AssembledElement, &mut Workspace) + Sync),
+) {
+    if elements.len() <= TOGETHER {
+        return elements
+            .iter()
+            .zip(rooms)
+            .for_each(|(placed, room)| compute(placed, room));
+    }
+    let middle = elements.len() / 2;
+    let (left, right) = elements.split_at(middle);
+    let (before, after) = rooms.split_at_mut(middle);
+    executor.join(
+        &mut || side_by_side(executor, left, before, compute),
+        &mut || side_by_side(executor, right, after, compute),
+    );
 }
 
 impl AssemblySums<'_> {
@@ -481,6 +546,21 @@ impl Workspace {
             buffer.resize(size, 0.0);
         }
         self.tangent.resize(size * size, 0.0);
+    }
+
+    /// The response of an element by its function of the past, the displacements, the force, and the tangent.
+    fn compute(
+        &mut self,
+        placed: &AssembledElement,
+        moved: &AssemblyMotion<'_>,
+        respond: impl FnOnce(&Previous<'_>, &[f64], &mut [f64], &mut [f64]) -> bool,
+    ) {
+        let n = placed.dofs.len();
+        let (u, before) = (&mut self.u[..n], &mut self.before[..n]);
+        let (force, tangent) = (&mut self.force[..n], &mut self.tangent[..n * n]);
+        let past = placed.gather_all(moved, u, before);
+        force.fill(0.0);
+        self.answers = respond(&past, u, force, tangent);
     }
 }
 

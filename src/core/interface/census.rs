@@ -24,7 +24,7 @@ const MOST_KEPT: usize = 1000;
 const TOLERANCE: f64 = 1e-9;
 
 /// Result of a census.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Census {
     /// Number of combinations that were tried, or ruled out by branch and bound; `usize::MAX` if there are more.
     pub tried: usize,
@@ -438,12 +438,8 @@ fn probe(k: usize) -> f64 {
 impl Census {
     fn empty() -> Self {
         Census {
-            tried: 0,
-            singular: 0,
-            visited: 0,
             exact: true,
-            answers: Vec::new(),
-            nearest: None,
+            ..Self::default()
         }
     }
 

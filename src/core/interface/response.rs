@@ -12,7 +12,7 @@ use crate::contact::table1::{Equation, RelativeMotion};
 use serde::{Deserialize, Serialize};
 
 /// Response of the condensed bodies' interface; normal and tangential components of each slave node in turn.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct InterfaceResponse {
     /// Stiffness k of the springs (force per length); may be infinite.
     pub stiffness: f64,

@@ -24,7 +24,7 @@ const PIVOTS: usize = 20;
 const SINGULAR: f64 = 1e11;
 
 /// The state of a path.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Tableau {
     rows: usize,
     /// Columns: all variables, the covering variable, the values of the basic variables that the path uses; if these are shifted,
@@ -143,17 +143,7 @@ impl Tableau {
     pub fn new(rows: usize) -> Self {
         Tableau {
             rows,
-            table: Vec::new(),
-            partners: Vec::new(),
-            basis: Vec::new(),
-            row_of: Vec::new(),
-            first: Vec::new(),
-            shifted: false,
-            entering: None,
-            left: None,
-            ended: None,
-            pivots: 0,
-            most: 0,
+            ..Self::default()
         }
     }
 

@@ -174,8 +174,9 @@ impl Condensation {
     ) -> Result<f64, SolveError> {
         let k = out.stiffness;
         self.residual.copy_from_slice(residual);
-        each(&*self.executor, &mut self.parts, &|part| {
-            part.done = part.condense(stands, stiffness, residual, k);
+        let executor = &*self.executor;
+        each(executor, &mut self.parts, &|part| {
+            part.done = part.condense(stands, stiffness, residual, k, executor);
         });
         for part in &self.parts {
             part.done?;
@@ -479,6 +480,7 @@ impl BodyGroup {
         stiffness: &[f64],
         residual: &[f64],
         shift: f64,
+        executor: &dyn Executor,
     ) -> Result<(), SolveError> {
         let residual = &residual[self.equations.clone()];
         if stands {
@@ -486,7 +488,7 @@ impl BodyGroup {
             return Ok(());
         }
         self.factors
-            .factor(&stiffness[self.values.clone()], shift)?;
+            .factor(&stiffness[self.values.clone()], shift, executor)?;
         self.factors.condense(residual, &mut self.load);
         self.factors.condensed(&mut self.schur);
         let next = self.unknowns.len() + 1;

@@ -10,6 +10,7 @@ use crate::interface::response::InterfaceResponse;
 use crate::linalg::{DenseFactors, SolveError};
 
 /// The condensed interface of a major iteration, and the result of the last minor iteration.
+#[derive(Default)]
 pub struct CondensedSystem {
     /// Whether `relation` belongs to the current linearisation.
     pub fresh: bool,
@@ -39,22 +40,13 @@ impl CondensedSystem {
     /// Allocates results for this many slave nodes; the condensed matrices are allocated on demand.
     pub fn new(slaves: usize) -> Self {
         CondensedSystem {
-            fresh: false,
-            norm: 0.0,
             relation: InterfaceResponse {
                 stiffness: 1.0,
-                start: Vec::new(),
-                response: Vec::new(),
+                ..InterfaceResponse::default()
             },
-            matrix: Vec::new(),
-            rhs: Vec::new(),
-            rows: Vec::new(),
-            unknown: Vec::new(),
-            answer: Vec::new(),
-            gaps: Vec::new(),
-            dense: None,
             forces: vec![[0.0; 2]; slaves],
             motions: vec![[0.0; 2]; slaves],
+            ..Self::default()
         }
     }
 

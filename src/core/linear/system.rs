@@ -76,7 +76,7 @@ pub struct System {
     pub(super) scaled: bool,
     pub(super) bodies: Option<Condensation>,
     /// Processes bodies in parallel.
-    executor: Arc<dyn Executor>,
+    pub(super) executor: Arc<dyn Executor>,
     pub(super) estimate: Estimate,
     /// Whether [`Condensation`] can condense the scene's bodies.
     pub(super) condensable: bool,

@@ -157,7 +157,9 @@ impl Tangent {
         }
         let (last, factors) = self.factors.as_mut()?;
         let (n, c, shift) = (self.pattern.size(), last.len(), system.spring(model));
-        factors.factor(&self.values, shift).ok()?;
+        factors
+            .factor(&self.values, shift, &*system.executor)
+            .ok()?;
         // Growth shows in the solution for almost any right-hand side.
         let (ones, mut x) = (vec![1.0; n], vec![0.0; n]);
         factors.solve(&ones, &mut x).ok()?;

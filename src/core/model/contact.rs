@@ -15,6 +15,9 @@ pub struct Surface {
     pub rigid: bool,
     /// Whether the surface extends straight beyond its ends. Such a surface is a single element of 2 nodes.
     pub endless: bool,
+    /// How far the first element extends past its start and the last one past its end, in units of their ξ. Only nodes that already
+    /// touch are held in the outer half. Zeros on a closed chain.
+    pub past_ends: [f64; 2],
     /// Pieces of a smooth curve through all nodes, one per element. The nodes of an element are then those that its piece depends
     /// on. Empty if each element is the Lagrange curve through its own nodes.
     pub smooth: Vec<Piece>,
@@ -30,6 +33,7 @@ impl Surface {
             elements,
             rigid,
             endless: false,
+            past_ends: [0.0; 2],
             smooth: Vec::new(),
             gives: Vec::new(),
         }

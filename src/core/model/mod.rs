@@ -40,7 +40,7 @@ pub use settings::{
 const MANY_EQUATIONS: usize = 4000;
 
 /// A checked scene.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Model {
     /// Title, one line.
     pub title: String,
@@ -288,9 +288,7 @@ impl Model {
         };
         Model {
             title: title.to_owned(),
-            about: String::new(),
             nodes,
-            bodies: Vec::new(),
             surfaces,
             contacts,
             dofs: Dofs {
@@ -300,22 +298,11 @@ impl Model {
                 equations: 0,
                 inner: 0,
             },
-            loads: Vec::new(),
-            pressures: Vec::new(),
-            prescribed: Vec::new(),
             path: vec![0.0, 1.0],
             increment: 1.0,
-            increments: Vec::new(),
-            least: None,
-            jumps: Jumps::default(),
-            control: Control::default(),
-            arc: ArcLength::default(),
-            settings: Settings::default(),
-            monitors: Vec::new(),
             budget: f64::INFINITY,
             length,
-            finished: None,
-            space: None,
+            ..Model::default()
         }
     }
 

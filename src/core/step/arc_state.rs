@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// Progress along the path, and the constraint of the current increment.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct ArcState {
     /// Arc length from the start of the history to the current increment (in the measured quantity).
     pub length: f64,
@@ -70,9 +70,10 @@ pub struct Change {
 }
 
 /// Constraint of an increment.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub enum ArcConstraint {
     /// None yet: the tangent has to be found.
+    #[default]
     Tangent,
     /// The plane normal to the tangent.
     Plane,
@@ -102,23 +103,10 @@ impl ArcState {
     /// State before the first increment.
     pub fn new(model: &Model) -> Self {
         ArcState {
-            length: 0.0,
-            step: 0.0,
-            first: 0.0,
             measured: model.arc.along,
             ahead: (model.path[1] - model.path[0]).signum(),
-            aim: ArcConstraint::Tangent,
-            left: 0.0,
-            known: false,
             sign: 1.0,
-            row: Arc::default(),
-            last: Arc::default(),
-            last_load: 0.0,
-            next: Arc::default(),
-            next_at: 0.0,
-            seen: Arc::default(),
-            slips: Arc::default(),
-            turned: false,
+            ..Self::default()
         }
     }
 

@@ -85,7 +85,7 @@
 //!
 //! let node = |name: &str, at| Node { name: name.into(), at };
 //! let nodes = vec![node("slave", [0.0, 0.1]), node("floor.1", [1.0, 0.0]), node("floor.2", [-1.0, 0.0])];
-//! let floor = Surface { name: "floor".into(), elements: vec![vec![1, 2]], rigid: true, endless: true, smooth: Vec::new(), gives: Vec::new() };
+//! let floor = Surface { name: "floor".into(), elements: vec![vec![1, 2]], rigid: true, endless: true, past_ends: [0.0; 2], smooth: Vec::new(), gives: Vec::new() };
 //! let contact = Contact::new(0, vec![0], Friction { angle: 20.0, cohesion: 0.0 });
 //! let model = Arc::new(Model::from_contacts("A node pressed on a floor", nodes, vec![floor], vec![contact]));
 //! let (state, event) = (State::outside_start(&model), Event::nothing_yet(&model));

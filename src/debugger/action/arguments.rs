@@ -11,7 +11,7 @@ use crate::history::breakpoints::Condition;
 use crate::history::watches::{Watch, WatchQuantity};
 use crate::record::command::{BranchTarget, Command, ExportScope};
 use std::path::PathBuf;
-use stickslip_core::model::Mode;
+use stickslip_core::Mode;
 use stickslip_manual as manual;
 use stickslip_study::Vary;
 

@@ -8,7 +8,7 @@ use super::paths::beginning_with;
 use super::table::{ACTIONS, ActionEntry, Verb, by_name};
 use crate::history::tree::Tree;
 use crate::history::watches::WatchQuantity;
-use stickslip_core::model::Mode;
+use stickslip_core::Mode;
 use stickslip_manual as manual;
 use stickslip_scene::format::paths;
 

@@ -5,9 +5,7 @@ use super::parse_error::ParseError;
 use super::table::{ActionEntry, begun, by_name};
 use crate::history::tree::Tree;
 use stickslip_core::interface::census::MOST;
-use stickslip_core::model::Model;
-use stickslip_core::step::solver::Capabilities;
-use stickslip_core::step::state::State;
+use stickslip_core::{Capabilities, Model, State};
 use stickslip_scene::Scene;
 use stickslip_scene::embedded::EmbeddedFile;
 

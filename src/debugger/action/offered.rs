@@ -6,9 +6,8 @@ use super::meaning::{Action, ChartOf, Page, Question, Ui};
 use super::table::{ActionEntry, Verb};
 use crate::record::command::{Command, ExportScope};
 use crate::record::export;
-use stickslip_core::model::{Friction, Mode};
-use stickslip_core::step::intervene::Intervention;
-use stickslip_core::step::solver::Capabilities;
+use stickslip_core::model::Friction;
+use stickslip_core::{Capabilities, Intervention, Mode};
 
 /// What an action needs of the current solver.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -8,8 +8,8 @@ use crate::history::tree::Tree;
 use crate::history::watches::{Watch, WatchQuantity};
 use crate::record::command::{Command, ExportScope, Unit};
 use std::path::PathBuf;
-use stickslip_core::model::{Contact, Node};
-use stickslip_core::model::{Friction, Mode, Model};
+use stickslip_core::model::{Contact, Friction, Node};
+use stickslip_core::{Mode, Model};
 use stickslip_scene::Scene;
 
 fn model() -> Model {

@@ -5,13 +5,10 @@
 //! tried.
 
 use super::remedy::{Remedy, RemedyKind};
-use stickslip_core::linear::singular::Singular;
 use stickslip_core::model::{
-    AtCycle, BoundUpdate, Geometry, InitialGaps, Jumps, Mode, Model, ResidualMethod, SearchMode,
-    Strategy,
+    AtCycle, BoundUpdate, Geometry, InitialGaps, Jumps, ResidualMethod, SearchMode,
 };
-use stickslip_core::step::event::Failure;
-use stickslip_core::step::state::State;
+use stickslip_core::{Failure, Mode, Model, Singular, State, Strategy};
 use stickslip_scene::gaps::turned;
 
 /// A possible measure.

@@ -9,9 +9,7 @@ use super::examination::{DONE, Examination, census, examine_nodes, frozen};
 use super::facts::{Fact, Part};
 use super::interface_scene::stepper;
 use super::walk::{ReportedIterations, walk};
-use stickslip_core::model::Model;
-use stickslip_core::step::solver::ReportedProblem;
-use stickslip_core::step::state::{State, Status};
+use stickslip_core::{Model, ReportedProblem, State, Status};
 
 /// Shown without reported minor iterations of the problem.
 const NOT_COMPARED: &str =

@@ -6,12 +6,7 @@ use std::mem::discriminant;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use stickslip_core::contact::projection::SurfacePoint;
-use stickslip_core::linear::norms::Norms;
-use stickslip_core::model::Mode;
-use stickslip_core::step::drive::{RunEnd, Until};
-use stickslip_core::step::event::{Failure, Outcome};
-use stickslip_core::step::state::State;
-use stickslip_core::step::stepper::Stepper;
+use stickslip_core::{Failure, Mode, Norms, Outcome, RunEnd, State, Stepper, Until};
 
 /// Result of a major iteration.
 #[derive(Debug, Clone)]

@@ -9,13 +9,10 @@ use stickslip_core::contact::closest_points::place;
 use stickslip_core::contact::element::SurfaceElement;
 use stickslip_core::contact::laws::{Finding, JudgedLaw, Verdict};
 use stickslip_core::fem::deformation::{PointDeformation, deformation};
-use stickslip_core::model::Model;
 use stickslip_core::model::{BodyKind, Solid};
 use stickslip_core::plane::{dot, minus};
-use stickslip_core::step::event::{Event, Outcome};
 use stickslip_core::step::judged::{self, ReferenceSizes};
-use stickslip_core::step::solver::Solver;
-use stickslip_core::step::stepper::Stepper;
+use stickslip_core::{Event, Model, Outcome, Solver, Stepper};
 
 /// Number of points per edge of an outline, for the search for nodes inside it.
 const POINTS: usize = 8;

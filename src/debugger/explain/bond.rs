@@ -1,6 +1,6 @@
 //! Describes the contact law of a slave node's pair, with its numbers.
 
-use stickslip_core::contact::record::ContactRecord;
+use stickslip_core::ContactRecord;
 use stickslip_core::model::{Bond, Contact};
 use stickslip_scene::number::sig4;
 

@@ -2,7 +2,8 @@
 
 use super::outline::Point;
 use std::collections::{BTreeMap, BTreeSet};
-use stickslip_core::model::{BodyKind, Component, Model};
+use stickslip_core::Model;
+use stickslip_core::model::{BodyKind, Component};
 use stickslip_core::plane::minus;
 
 /// What an arrow or a turn stands for.

@@ -5,12 +5,9 @@ use super::facts::{Fact, Part};
 use super::influence::{Influence, NodePush};
 use super::names;
 use std::sync::Arc;
-use stickslip_core::contact::record::ContactRecord;
 use stickslip_core::interface::cone::{self, ConeContact};
 use stickslip_core::interface::cone_census;
-use stickslip_core::model::{Mode, Model};
-use stickslip_core::step::event::Event;
-use stickslip_core::step::solver::ReportedProblem;
+use stickslip_core::{ContactRecord, Event, Mode, Model, ReportedProblem};
 use stickslip_scene::number::sig4;
 
 /// Maximum number of contacts, because the matrix is dense.

@@ -7,11 +7,9 @@ use crate::explain::names::slave;
 use crate::explain::strain;
 use stickslip_core::interface::census;
 use stickslip_core::interface::method::NotFound;
-use stickslip_core::linear::norms::Norms;
-use stickslip_core::linear::singular::{LooseMotion, RigidMotion, Singular};
-use stickslip_core::model::Model;
-use stickslip_core::step::event::Failure;
+use stickslip_core::linear::singular::{LooseMotion, RigidMotion};
 use stickslip_core::words::{counted, times};
+use stickslip_core::{Failure, Model, Norms, Singular};
 use stickslip_scene::number::{sig2, sig4};
 use stickslip_scene::shown::first_of;
 

@@ -2,10 +2,8 @@
 
 use super::failures;
 use super::names::slave;
-use stickslip_core::model::Model;
-use stickslip_core::step::event::Failure;
-use stickslip_core::step::state::State;
 use stickslip_core::words::times;
+use stickslip_core::{Failure, Model, State};
 use stickslip_scene::number::shortest;
 use stickslip_scene::shown::first_of;
 

@@ -6,16 +6,10 @@
 //! its row j. Then the solutions differ by exactly `Σ_j M⁻¹ e_j δ_j`: each term is the effect of node j's
 //! change.
 
-use stickslip_core::contact::state::ContactState;
 use stickslip_core::contact::table1::{Equation, RelativeMotion};
 use stickslip_core::interface::kinematics::NodeIncrement;
-use stickslip_core::interface::problem::InterfaceProblem;
 use stickslip_core::interface::rows;
-use stickslip_core::interface::trials::Trials;
-use stickslip_core::model::Mode;
-use stickslip_core::step::intervene::Intervention;
-use stickslip_core::step::state::State;
-use stickslip_core::step::stepper::Stepper;
+use stickslip_core::{ContactState, InterfaceProblem, Intervention, Mode, State, Stepper, Trials};
 
 /// Effect of one node's change on another node.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -3,10 +3,9 @@
 
 use super::names;
 use std::sync::Arc;
-use stickslip_core::model::{InitialState, Mode, Model, Strategy};
-use stickslip_core::step::solver::{ReportedForm, ReportedProblem};
-use stickslip_core::step::state::State;
-use stickslip_core::step::stepper::Stepper;
+use stickslip_core::model::InitialState;
+use stickslip_core::step::solver::ReportedForm;
+use stickslip_core::{Mode, Model, ReportedProblem, State, Stepper, Strategy};
 use stickslip_scene::Scene;
 use stickslip_scene::format::SceneError;
 use stickslip_scene::format::condensed::{Contact, Matrix, Problem};

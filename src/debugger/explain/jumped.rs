@@ -1,9 +1,8 @@
 //! Describes jumps to another branch of equilibrium, and loss of stability.
 
 use stickslip_core::linear::stability::Stability;
-use stickslip_core::model::Model;
-use stickslip_core::step::event::Event;
 use stickslip_core::step::watch::StabilityLoss;
+use stickslip_core::{Event, Model};
 use stickslip_scene::number::{shortest, sig2, sig4};
 
 /// The motions that lead away from an unstable state.

@@ -17,15 +17,13 @@ use super::{names, strain};
 use std::collections::HashSet;
 use std::ops::ControlFlow;
 use std::sync::Arc;
-use stickslip_core::contact::record::ContactRecord;
 use stickslip_core::fem::deformation::PointDeformation;
-use stickslip_core::linear::singular::{RigidMotion, Singular};
-use stickslip_core::model::{Body, Mode, Model};
+use stickslip_core::linear::singular::RigidMotion;
+use stickslip_core::model::Body;
 use stickslip_core::step::arc_state::Change;
-use stickslip_core::step::drive::{RunEnd, Until};
-use stickslip_core::step::event::{Failure, Outcome};
-use stickslip_core::step::state::State;
-use stickslip_core::step::stepper::Stepper;
+use stickslip_core::{
+    ContactRecord, Failure, Mode, Model, Outcome, RunEnd, Singular, State, Stepper, Until,
+};
 use stickslip_scene::number::{sig4, sig6};
 use stickslip_scene::shown::first_of;
 

@@ -4,13 +4,10 @@
 use super::failures;
 use std::mem::discriminant;
 use std::ops::ControlFlow;
-use stickslip_core::linear::singular::Singular;
-use stickslip_core::model::Model;
-use stickslip_core::step::drive::{RunEnd, Until};
-use stickslip_core::step::event::{Failure, MotionEvent, Outcome};
-use stickslip_core::step::intervene::Intervention;
-use stickslip_core::step::state::State;
-use stickslip_core::step::stepper::Stepper;
+use stickslip_core::step::event::MotionEvent;
+use stickslip_core::{
+    Failure, Intervention, Model, Outcome, RunEnd, Singular, State, Stepper, Until,
+};
 use stickslip_scene::number::{shortest, sig2, sig6};
 
 /// Smallest step, as a fraction of the increment.

@@ -2,7 +2,7 @@
 //! failure.
 
 use super::restart::{Restart, changed, restart};
-use stickslip_core::step::state::State;
+use stickslip_core::State;
 use stickslip_scene::format::spec::Spec;
 
 /// Result of the trial.

@@ -3,7 +3,8 @@
 use super::conditions::{Support, supports};
 use super::round_off::reach;
 use std::collections::HashMap;
-use stickslip_core::model::{Body, BodyKind, Model, SolidElement};
+use stickslip_core::Model;
+use stickslip_core::model::{Body, BodyKind, SolidElement};
 use stickslip_core::plane::minus;
 
 /// Facts about a model.

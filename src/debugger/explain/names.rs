@@ -1,9 +1,7 @@
 //! The words for slave nodes, modes, rules and positions, and Table 2 as printed.
 
-use stickslip_core::contact::table2::Rule;
-use stickslip_core::model::{Mode, Model};
-use stickslip_core::step::event::Position;
 use stickslip_core::step::intervene::Start;
+use stickslip_core::{Mode, Model, Position, Rule};
 use stickslip_scene::number::shortest;
 
 /// Name of a slave node.

@@ -3,9 +3,9 @@
 
 use stickslip_core::contact::element::SurfaceElement;
 use stickslip_core::fem::lagrange;
-use stickslip_core::model::{Body, BodyKind, Model};
+use stickslip_core::model::{Body, BodyKind};
 use stickslip_core::plane::minus;
-use stickslip_core::step::event::Event;
+use stickslip_core::{Event, Model};
 
 /// A point in the scene or on the sheet.
 pub type Point = [f64; 2];
@@ -95,7 +95,7 @@ pub fn curve(nodes: &[Point]) -> Vec<Point> {
 /// The points whose Lagrange curve is that of a master element; `place` gives the positions of nodes.
 pub fn element(element: SurfaceElement<'_>, place: impl Fn(usize) -> Point) -> Vec<Point> {
     let nodes: Vec<Point> = element.nodes.iter().map(|&node| place(node)).collect();
-    if !element.is_smooth() {
+    if element.is_plain() {
         return nodes;
     }
     let count = element.degree() + 1;

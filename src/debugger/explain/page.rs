@@ -27,13 +27,9 @@ use super::strain::MaterialCause;
 use super::try_list::{self, TryLine, TryOutcome, helps};
 use stickslip_core::interface::census::MOST;
 use stickslip_core::interface::method::NotFound;
-use stickslip_core::linear::norms::Norms;
-use stickslip_core::linear::singular::Singular;
-use stickslip_core::model::{Body, BodyKind, FinishedRun, InitialGaps, Model};
-use stickslip_core::step::event::Failure;
-use stickslip_core::step::state::{State, Status};
-use stickslip_core::step::stepper::Stepper;
+use stickslip_core::model::{Body, BodyKind, FinishedRun, InitialGaps};
 use stickslip_core::words::counted;
+use stickslip_core::{Failure, Model, Norms, Singular, State, Status, Stepper};
 use stickslip_scene::format::spec::Spec;
 use stickslip_scene::gaps::turned;
 use stickslip_scene::number::{sig2, sig4};
@@ -274,6 +270,7 @@ impl DiagnosisPage {
 const MOST_WHY: usize = 3;
 
 /// The page in progress.
+#[derive(Default)]
 struct PageBuilder {
     what: String,
     facts: Vec<Fact>,
@@ -298,13 +295,7 @@ impl PageBuilder {
     ) -> PageBuilder {
         let mut page = PageBuilder {
             what: headline(stepper.model(), state, failure),
-            facts: Vec::new(),
-            by_hand: Vec::new(),
-            pending: Vec::new(),
-            trials: Vec::new(),
-            refines: false,
-            finer: None,
-            found: Examination::default(),
+            ..PageBuilder::default()
         };
         let cause = MaterialCause::find(stepper.model(), state, failure);
         let certain = cause.filter(MaterialCause::is_certain);

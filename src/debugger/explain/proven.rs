@@ -1,9 +1,9 @@
 //! What the matrix of a frozen problem proves: that there is at most one consistent state, and the limit of
 //! T_max while the modes repeat.
 
+use stickslip_core::InterfaceProblem;
 use stickslip_core::interface::census::{Census, MOST_SEARCHED};
 use stickslip_core::interface::family::{Family, families};
-use stickslip_core::interface::problem::InterfaceProblem;
 use stickslip_core::interface::t_max_iteration::{TMaxIteration, TMaxLimit, spiral};
 use stickslip_core::interface::uniqueness::{Inapplicable, Uniqueness};
 use stickslip_core::strategy::method;

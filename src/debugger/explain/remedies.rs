@@ -11,16 +11,12 @@ use super::tested::Dimension;
 use std::cmp::Ordering;
 use std::ops::ControlFlow;
 use stickslip_core::contact::laws::JudgedLaw;
-use stickslip_core::contact::record::{ContactRecord, Forced};
 use stickslip_core::interface::method::NotFound;
-use stickslip_core::linear::norms::Norms;
-use stickslip_core::model::{Mode, Model, Strategy};
-use stickslip_core::step::drive::{RunEnd, Until, drive};
-use stickslip_core::step::event::{Event, Failure, Outcome};
-use stickslip_core::step::intervene::Intervention;
-use stickslip_core::step::solver::{Capabilities, Solver};
-use stickslip_core::step::state::{State, Status};
-use stickslip_core::step::stepper::Stepper;
+use stickslip_core::step::drive::drive;
+use stickslip_core::{
+    Capabilities, ContactRecord, Event, Failure, Forced, Intervention, Mode, Model, Norms, Outcome,
+    RunEnd, Solver, State, Status, Stepper, Strategy, Until,
+};
 use stickslip_platform::clock::Instant;
 use stickslip_scene::format::paths;
 use stickslip_scene::format::spec::Spec;

@@ -10,13 +10,11 @@ use super::names;
 use super::strain::{self, MaterialCause};
 use stickslip_core::contact::projection::projection_at;
 use stickslip_core::model::{
-    AtCycle, BoundUpdate, Geometry, InitialGaps, Jumps, Mode, Model, ResidualMethod, SearchMode,
-    Settings, Sticking, Strategy, Touch,
+    AtCycle, BoundUpdate, Geometry, InitialGaps, Jumps, ResidualMethod, SearchMode, Sticking, Touch,
 };
-use stickslip_core::step::event::Failure;
-use stickslip_core::step::intervene::{Intervention, Start, Value};
+use stickslip_core::step::intervene::{Start, Value};
 use stickslip_core::step::solver::Parameter;
-use stickslip_core::step::state::State;
+use stickslip_core::{Failure, Intervention, Mode, Model, Settings, State, Strategy};
 use stickslip_scene::gaps::{StartGaps, start_gaps, turned};
 use stickslip_scene::number;
 

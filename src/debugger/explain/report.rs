@@ -7,17 +7,13 @@ use crate::explain::judged;
 use crate::explain::jumped;
 use crate::explain::names::{self, mode, position_in, slave};
 use crate::explain::strain;
-use stickslip_core::contact::record::ContactRecord;
-use stickslip_core::contact::table2::{Decision, Rule, TestedQuantity};
-use stickslip_core::linear::singular::Singular;
-use stickslip_core::model::Model;
+use stickslip_core::contact::table2::{Decision, TestedQuantity};
 use stickslip_core::step::arc_state::Change;
-use stickslip_core::step::event::{
-    Event, Failure, MotionEvent, Outcome, Position, SmallerStepReason,
-};
-use stickslip_core::step::intervene::Intervention;
-use stickslip_core::step::state::State;
+use stickslip_core::step::event::{MotionEvent, SmallerStepReason};
 use stickslip_core::words::counted;
+use stickslip_core::{
+    ContactRecord, Event, Failure, Intervention, Model, Outcome, Position, Rule, Singular, State,
+};
 use stickslip_scene::number::{shortest, sig2, sig4, sig6};
 use stickslip_scene::shown::first_of;
 

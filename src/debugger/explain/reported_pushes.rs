@@ -14,14 +14,12 @@ use super::influence::{NodePush, left_side, spread};
 use super::interface_scene;
 use nalgebra::DVector;
 use std::sync::Arc;
-use stickslip_core::contact::record::ContactRecord;
 use stickslip_core::contact::table1::{Equation, RelativeMotion};
 use stickslip_core::interface::kinematics::NodeIncrement;
-use stickslip_core::interface::trials::Trials;
-use stickslip_core::model::{BoundUpdate, Mode, Model};
-use stickslip_core::step::event::Event;
-use stickslip_core::step::solver::{Capabilities, ReportedProblem, RewindSupport};
-use stickslip_core::step::state::State;
+use stickslip_core::model::BoundUpdate;
+use stickslip_core::{
+    Capabilities, ContactRecord, Event, Mode, Model, ReportedProblem, RewindSupport, State, Trials,
+};
 
 /// Maximum number of contacts for which the problem is requested in every iteration, because it is sent as text
 /// through a pipe.

@@ -3,12 +3,9 @@
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
-use stickslip_core::model::Settings;
-use stickslip_core::step::drive::{RunEnd, Until};
-use stickslip_core::step::event::{Failure, Outcome};
-use stickslip_core::step::intervene::Intervention;
-use stickslip_core::step::state::{State, Status};
-use stickslip_core::step::stepper::Stepper;
+use stickslip_core::{
+    Failure, Intervention, Outcome, RunEnd, Settings, State, Status, Stepper, Until,
+};
 use stickslip_scene::Scene;
 use stickslip_scene::format::spec::Spec;
 

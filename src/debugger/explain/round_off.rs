@@ -6,8 +6,7 @@
 //! 0, no arrow is drawn for it, and no lesson asks about it. A number that decided a mode is always shown, with
 //! [`NOTE`].
 
-use stickslip_core::linear::norms::Norms;
-use stickslip_core::model::Model;
+use stickslip_core::{Model, Norms};
 use stickslip_scene::number;
 
 /// Round-off in units of the machine precision times the largest term of a sum.

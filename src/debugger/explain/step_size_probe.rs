@@ -3,9 +3,7 @@
 
 use crate::explain::diagnosis::undecided;
 use stickslip_core::interface::census::census;
-use stickslip_core::step::intervene::Intervention;
-use stickslip_core::step::state::State;
-use stickslip_core::step::stepper::Stepper;
+use stickslip_core::{Intervention, State, Stepper};
 use stickslip_scene::number::shortest;
 
 /// Maximum number of halvings of the increment.

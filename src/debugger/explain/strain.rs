@@ -2,9 +2,8 @@
 //! ([`stickslip_core::fem::deformation`]).
 
 use stickslip_core::fem::deformation::{Deformation, PointDeformation, StretchRange, deformation};
-use stickslip_core::model::{BodyKind, Elastic, Law, Model, Update};
-use stickslip_core::step::event::Failure;
-use stickslip_core::step::state::State;
+use stickslip_core::model::{BodyKind, Elastic, Law, Update};
+use stickslip_core::{Failure, Model, State};
 use stickslip_scene::number::sig4;
 
 /// Displacements beyond this multiple of the scene's length are meaningless as a shape.

@@ -7,12 +7,8 @@
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
-use stickslip_core::model::{Mode, Model, Touch};
-use stickslip_core::step::drive::{RunEnd, Until};
-use stickslip_core::step::event::{Event, Outcome};
-use stickslip_core::step::intervene::Intervention;
-use stickslip_core::step::state::State;
-use stickslip_core::step::stepper::Stepper;
+use stickslip_core::model::Touch;
+use stickslip_core::{Event, Intervention, Mode, Model, Outcome, RunEnd, State, Stepper, Until};
 
 /// Smallest reported difference of forces, relative to the largest force.
 const TOLD: f64 = 1e-4;

@@ -6,13 +6,12 @@
 
 use super::interface_scene;
 use std::sync::Arc;
-use stickslip_core::interface::problem::InterfaceProblem;
-use stickslip_core::interface::trials::Trials;
-use stickslip_core::model::{BoundUpdate, Mode, Model, Settings, SlipCount, Strategy, Touch};
-use stickslip_core::step::event::{Event, Position};
-use stickslip_core::step::solver::ReportedProblem;
-use stickslip_core::step::state::State;
+use stickslip_core::model::{BoundUpdate, SlipCount, Touch};
 use stickslip_core::strategy::method;
+use stickslip_core::{
+    Event, InterfaceProblem, Mode, Model, Position, ReportedProblem, Settings, State, Strategy,
+    Trials,
+};
 use stickslip_scene::format::condensed::Problem;
 
 /// Maximum number of contacts of a walked problem, because each iteration is a dense solve.

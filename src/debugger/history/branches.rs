@@ -3,8 +3,7 @@
 use crate::explain::names;
 use crate::history::strip::Strip;
 use crate::history::tree::Tree;
-use stickslip_core::model::Model;
-use stickslip_core::step::intervene::Intervention;
+use stickslip_core::{Intervention, Model};
 
 /// Cost of a part of the history.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -8,8 +8,8 @@ use crate::history::strip::{PointKind, Strip};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
-use stickslip_core::model::{Mode, Model};
 use stickslip_core::words::noun_for;
+use stickslip_core::{Mode, Model};
 
 /// Condition of a breakpoint. A node is a slave number; `None` matches any node.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -11,8 +11,7 @@ use crate::history::branches::{self, Cost};
 use crate::history::frame::Frame;
 use crate::history::strip::Strip;
 use crate::history::tree::Tree;
-use stickslip_core::model::{Mode, Model};
-use stickslip_core::step::event::Position;
+use stickslip_core::{Mode, Model, Position};
 use stickslip_scene::number::{shortest, sig2};
 use stickslip_scene::shown::first_of;
 

@@ -1,9 +1,7 @@
 //! A frame: the state after one minor iteration or one intervention.
 
 use std::sync::Arc;
-use stickslip_core::step::event::Event;
-use stickslip_core::step::intervene::Intervention;
-use stickslip_core::step::state::State;
+use stickslip_core::{Event, Intervention, State};
 
 /// A point of the history.
 ///

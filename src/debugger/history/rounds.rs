@@ -11,8 +11,8 @@ use crate::explain::names;
 use std::collections::VecDeque;
 use stickslip_core::contact::record;
 use stickslip_core::interface::cycle;
-use stickslip_core::model::{Mode, Model};
 use stickslip_core::words::counted;
+use stickslip_core::{Mode, Model};
 
 /// Longest period searched for.
 const LONGEST: usize = 200;

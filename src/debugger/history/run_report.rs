@@ -7,9 +7,8 @@ use crate::explain::facts::{Fact, Part};
 use crate::explain::headline::brief;
 use crate::explain::strain;
 use stickslip_core::fem::deformation::deformation;
-use stickslip_core::model::Model;
-use stickslip_core::step::event::Outcome;
 use stickslip_core::words::{counted, noun_for};
+use stickslip_core::{Model, Outcome};
 use stickslip_scene::number::{shortest, sig4};
 use stickslip_scene::shown::first_of;
 

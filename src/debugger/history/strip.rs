@@ -6,11 +6,9 @@
 //! and the end of a major iteration add their norms.
 
 use std::sync::Arc;
-use stickslip_core::contact::record::{ContactRecord, Forced};
-use stickslip_core::linear::norms::Norms;
-use stickslip_core::model::{Mode, Model};
-use stickslip_core::step::event::{Event, Failure, Outcome, Position};
-use stickslip_core::step::state::State;
+use stickslip_core::{
+    ContactRecord, Event, Failure, Forced, Mode, Model, Norms, Outcome, Position, State,
+};
 
 /// Kind of a point of the history.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -16,13 +16,8 @@ use crate::history::frame::Frame;
 use crate::history::strip::{PointKind, Strip};
 use std::collections::HashMap;
 use std::sync::Arc;
-use stickslip_core::contact::record::ContactRecord;
-use stickslip_core::contact::state::ContactState;
-use stickslip_core::model::Model;
-use stickslip_core::step::event::Event;
-use stickslip_core::step::intervene::Intervention;
 use stickslip_core::step::state::IncrementStart;
-use stickslip_core::step::state::State;
+use stickslip_core::{ContactRecord, ContactState, Event, Intervention, Model, State};
 
 /// Limits of the memory that a history takes, in bytes.
 #[derive(Debug, Clone, Copy)]

@@ -3,7 +3,7 @@
 use crate::explain::names;
 use crate::history::frame::Frame;
 use serde::{Deserialize, Serialize};
-use stickslip_core::model::Model;
+use stickslip_core::Model;
 
 stickslip_core::words! {
     /// A quantity of the last minor iteration. Forces and lengths are those of

@@ -5,8 +5,8 @@ use crate::history::strip::PointKind;
 use crate::history::watches::Watch;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
-use stickslip_core::model::Mode;
-use stickslip_core::step::intervene::{Intervention, Start};
+use stickslip_core::step::intervene::Start;
+use stickslip_core::{Intervention, Mode};
 
 /// A command of a session.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

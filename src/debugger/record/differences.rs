@@ -10,11 +10,8 @@ use super::snapshot::{Displacement, Recorded, SlaveRecord, Snapshot};
 use crate::explain::names;
 use std::collections::BTreeMap;
 use std::fmt::{self, Debug};
-use stickslip_core::contact::table2::Rule;
-use stickslip_core::linear::norms::Norms;
-use stickslip_core::linear::singular::{LooseMotion, Singular};
-use stickslip_core::step::event::Failure;
-use stickslip_core::step::state::Status;
+use stickslip_core::linear::singular::LooseMotion;
+use stickslip_core::{Failure, Norms, Rule, Singular, Status};
 use stickslip_scene::Scene;
 use stickslip_scene::format::paths;
 use stickslip_scene::number::{sig2, sig4};
@@ -160,24 +157,24 @@ impl Differences {
         self.exact_text("status", status(&a.status), status(&b.status));
         self.norms("before", a.before.as_ref(), b.before.as_ref(), scales);
         self.norms("after", a.after.as_ref(), b.after.as_ref(), scales);
-        let (left, right) = (
-            by_name(&a.slaves, |s| &s.node),
-            by_name(&b.slaves, |s| &s.node),
+        self.named(
+            SLAVE,
+            &a.slaves,
+            &b.slaves,
+            |s| &s.node,
+            |all, a, b| {
+                all.slave(a, b, scales);
+            },
         );
-        for (node, pair) in paired(&left, &right) {
-            if let Some((left, right)) = self.both(node, SLAVE, pair) {
-                self.slave(left, right, scales);
-            }
-        }
-        let (left, right) = (
-            by_name(&a.displacements, |d| &d.node),
-            by_name(&b.displacements, |d| &d.node),
+        self.named(
+            NODE,
+            &a.displacements,
+            &b.displacements,
+            |d| &d.node,
+            |all, a, b| {
+                all.displacement(a, b, scales);
+            },
         );
-        for (node, pair) in paired(&left, &right) {
-            if let Some((left, right)) = self.both(node, NODE, pair) {
-                self.displacement(left, right, scales);
-            }
-        }
         self.exact("number of shear forces", &a.shear.len(), &b.shear.len());
         for (k, (left, right)) in a.shear.iter().zip(&b.shear).enumerate() {
             self.number(
@@ -252,21 +249,26 @@ impl Differences {
         }
     }
 
-    /// Reports an item that only one side has as a difference, and returns items that both have, for the caller
-    /// to compare.
-    fn both<'a, T>(
+    /// Compares the items that both sides have under a name; one that only one side has is a difference.
+    fn named<'a, T>(
         &mut self,
-        node: &str,
         field: &str,
-        pair: (Option<&&'a T>, Option<&&'a T>),
-    ) -> Option<(&'a T, &'a T)> {
-        match pair {
-            (Some(left), Some(right)) => Some((left, right)),
-            (left, right) => {
-                let text = |there: bool| if there { "there" } else { ABSENT }.to_owned();
-                let (left, right) = (text(left.is_some()), text(right.is_some()));
-                self.exact_text((node, field), left, right);
-                None
+        a: &'a [T],
+        b: &'a [T],
+        name: fn(&T) -> &String,
+        compare: impl Fn(&mut Self, &T, &T),
+    ) {
+        let by_name = |all: &'a [T]| -> BTreeMap<String, &'a T> {
+            all.iter().map(|one| (name(one).clone(), one)).collect()
+        };
+        for (node, pair) in paired(&by_name(a), &by_name(b)) {
+            match pair {
+                (Some(left), Some(right)) => compare(self, left, right),
+                (left, right) => {
+                    let text = |there: bool| if there { "there" } else { ABSENT }.to_owned();
+                    let (left, right) = (text(left.is_some()), text(right.is_some()));
+                    self.exact_text((node.as_str(), field), left, right);
+                }
             }
         }
     }
@@ -329,10 +331,6 @@ fn interventions(snapshot: &Snapshot) -> Vec<String> {
         .iter()
         .map(|a| format!("after {}: {:?}", a.step, a.intervention))
         .collect()
-}
-
-fn by_name<T>(all: &[T], name: impl Fn(&T) -> &String) -> BTreeMap<String, &T> {
-    all.iter().map(|one| (name(one).clone(), one)).collect()
 }
 
 type Pairs<'a, T> = Vec<(&'a String, (Option<&'a T>, Option<&'a T>))>;

@@ -16,7 +16,7 @@ use std::fmt::Write as _;
 use std::fs::TryLockError;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use stickslip_core::step::state::State;
+use stickslip_core::State;
 use stickslip_exchange::seal::Digest;
 use stickslip_platform::disk::File;
 use stickslip_platform::input::{self, RECORD_BYTES};

@@ -9,16 +9,12 @@ use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use stickslip_core::contact::record::Forced;
-use stickslip_core::contact::table2::Rule;
-use stickslip_core::linear::norms::Norms;
-use stickslip_core::model::{Mode, Model};
-use stickslip_core::step::drive::{RunEnd, Until, drive};
-use stickslip_core::step::event::{Event, Position};
-use stickslip_core::step::intervene::Intervention;
-use stickslip_core::step::solver::Solver;
-use stickslip_core::step::state::{State, Status};
+use stickslip_core::step::drive::drive;
 use stickslip_core::words::counted;
+use stickslip_core::{
+    Event, Forced, Intervention, Mode, Model, Norms, Position, Rule, RunEnd, Solver, State, Status,
+    Until,
+};
 use stickslip_platform::disk;
 use stickslip_platform::files::{self, FileError};
 use stickslip_platform::input::{self, RECORD_BYTES};

@@ -3,7 +3,7 @@
 use crate::explain::names;
 use crate::record::command::{BranchTarget, Command, Unit};
 use crate::record::journal::{Entry, JournalError, Record, date};
-use stickslip_core::model::Model;
+use stickslip_core::Model;
 use stickslip_core::words::counted;
 
 /// The text of a journal.

@@ -8,8 +8,8 @@ use crate::explain::reported_pushes::Iterations;
 use crate::explain::walk::ReportedIterations;
 use crate::record::export::export_state::ExportError;
 use std::sync::Arc;
+use stickslip_core::State;
 use stickslip_core::fem::deformation::PointDeformation;
-use stickslip_core::step::state::State;
 
 /// Position: branch, and step on its line.
 pub type LinePlace = (usize, usize);

@@ -6,8 +6,7 @@ use super::refusal::Refusal;
 use super::worker::Steps;
 use crate::explain::report;
 use crate::history::branches;
-use stickslip_core::step::intervene::Intervention;
-use stickslip_core::step::state::State;
+use stickslip_core::{Intervention, State};
 
 impl Session {
     /// Applies an intervention at the cursor; `setting` is the path and value that it came from.

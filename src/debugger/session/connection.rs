@@ -5,10 +5,9 @@ use super::timeline::Timeline;
 use crate::history::strip::Strip;
 use crate::recorded::log::Log;
 use stickslip_core::model::Friction;
-use stickslip_core::step::intervene::Intervention;
-use stickslip_core::step::solver::{Capabilities, RewindSupport};
-use stickslip_core::step::state::{Controls, State};
+use stickslip_core::step::state::Controls;
 use stickslip_core::words::counted;
+use stickslip_core::{Capabilities, Intervention, RewindSupport, State};
 
 /// A solver as its session sees it.
 pub struct Connection {

@@ -1,8 +1,8 @@
 //! The scene with the changes made during a run, and further changes of its scalars.
 
 use super::refusal::Refusal;
+use stickslip_core::Intervention;
 use stickslip_core::model::{Contact, Friction};
-use stickslip_core::step::intervene::Intervention;
 use stickslip_core::step::state::Controls;
 use stickslip_scene::Scene;
 use stickslip_scene::format::contact_law::FrictionSpec;

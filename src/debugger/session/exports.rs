@@ -11,11 +11,7 @@ use crate::record::export::export_state::{ExportError, ExportState, PictureReque
 use crate::record::export::{self, ExportKind, Origin};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use stickslip_core::model::Model;
-use stickslip_core::step::event::Event;
-use stickslip_core::step::solver::ReportedProblem;
-use stickslip_core::step::state::{State, Status};
-use stickslip_core::step::stepper::Stepper;
+use stickslip_core::{Event, Model, ReportedProblem, State, Status, Stepper};
 use stickslip_platform::files;
 use stickslip_scene::Scene;
 

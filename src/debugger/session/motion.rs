@@ -5,7 +5,7 @@ use super::refusal::Refusal;
 use super::worker::Steps;
 use crate::history::breakpoints::Breakpoints;
 use crate::record::command::Unit;
-use stickslip_core::step::state::Status;
+use stickslip_core::Status;
 use stickslip_core::words::counted;
 
 impl Session {

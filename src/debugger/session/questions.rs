@@ -16,7 +16,7 @@ use crate::record::export::{self, ExportSource, Origin};
 use crate::record::snapshot::{self, Snapshot};
 use std::path::PathBuf;
 use stickslip_core::model::BodyKind;
-use stickslip_core::step::state::{State, Status};
+use stickslip_core::{State, Status};
 use stickslip_platform::files;
 
 impl Session {

@@ -20,11 +20,7 @@ use crate::record::command::{BranchTarget, Unit};
 use crate::record::export::export_state::COLUMNS;
 use crate::record::snapshot::AppliedIntervention;
 use std::sync::Arc;
-use stickslip_core::linear::norms::Norms;
-use stickslip_core::model::Model;
-use stickslip_core::step::event::{Event, Outcome, Position};
-use stickslip_core::step::intervene::Intervention;
-use stickslip_core::step::state::{State, Status};
+use stickslip_core::{Event, Intervention, Model, Norms, Outcome, Position, State, Status};
 use stickslip_scene::number::shortest;
 use stickslip_scene::shown;
 

@@ -5,8 +5,7 @@ use crate::explain::remedies::{self, RemedyTrial};
 use crate::explain::remedy::Remedy;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::Sender;
-use stickslip_core::step::state::State;
-use stickslip_core::step::stepper::Stepper;
+use stickslip_core::{State, Stepper};
 use stickslip_scene::format::spec::Spec;
 
 /// Tries every remedy from a state.

@@ -10,11 +10,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, Sender, SyncSender, TryRecvError, channel, sync_channel};
 use std::time::Duration;
-use stickslip_core::step::drive::{RunEnd, Until, drive};
-use stickslip_core::step::event::Event;
-use stickslip_core::step::intervene::Intervention;
-use stickslip_core::step::solver::{Solver, SolverLost};
-use stickslip_core::step::state::State;
+use stickslip_core::step::drive::drive;
+use stickslip_core::{Event, Intervention, RunEnd, Solver, SolverLost, State, Until};
 use stickslip_platform::clock::Instant;
 use stickslip_platform::task::{self, Next, Task};
 
@@ -150,7 +147,7 @@ impl Worker {
                 let end = match job {
                     Job::Steps(state, steps) => match solver.restore(&state) {
                         Ok(()) => take(solver, steps, &news, &flag),
-                        Err(lost) => news.send(Message::Lost(lost)).ok().map(|()| None),
+                        Err(lost) => send_last(&news, Message::Lost(lost)),
                     },
                     Job::Rest(steps) => take(solver, steps, &news, &flag),
                     Job::Look(look) => {
@@ -318,19 +315,25 @@ fn run(
             false => RunEnd::Spent,
         },
         Ok(end) => end,
-        Err(lost) => return news.send(Message::Lost(lost)).ok().map(|()| None),
+        Err(lost) => return send_last(news, Message::Lost(lost)),
     };
     let interrupted = matches!(end, RunEnd::Interrupted);
     let round = round.map(|round| rounds::words(solver.model(), &round, false));
     let parts: Vec<String> = solver.take_notice().into_iter().chain(round).collect();
     let remark = (!parts.is_empty()).then(|| parts.join("; "));
-    news.send(Message::Done {
-        interrupted,
-        hits,
-        remark,
-    })
-    .ok()
-    .map(|()| None)
+    send_last(
+        news,
+        Message::Done {
+            interrupted,
+            hits,
+            remark,
+        },
+    )
+}
+
+/// Sends what ends a command; `None` if the receiver is gone.
+fn send_last<T>(news: &SyncSender<Message>, message: Message) -> Option<Option<T>> {
+    news.send(message).ok().map(|()| None)
 }
 
 /// The last minor iteration, started at `began`, as a frame and its strip.
@@ -381,20 +384,21 @@ fn follow(
         match taken {
             Ok(true) => news.send(message(solver, step, began)).ok()?,
             Ok(false) => break,
-            Err(lost) => return news.send(Message::Lost(lost)).ok().map(|()| None),
+            Err(lost) => return send_last(news, Message::Lost(lost)),
         }
         if task::is_slice_over() && steps.len() > 0 {
             return Some(Some(steps.collect()));
         }
     }
     let (hits, remark) = (Vec::new(), solver.take_notice());
-    news.send(Message::Done {
-        interrupted,
-        hits,
-        remark,
-    })
-    .ok()
-    .map(|()| None)
+    send_last(
+        news,
+        Message::Done {
+            interrupted,
+            hits,
+            remark,
+        },
+    )
 }
 
 /// A step taken for the first time.

@@ -3,7 +3,8 @@
 use super::super::limits;
 use crate::format::error::{Fault, at, bail, fault};
 use crate::format::spec::History;
-use stickslip_core::model::{Body, BodyKind, Control, Settings, Touch};
+use stickslip_core::Settings;
+use stickslip_core::model::{Body, BodyKind, Control, Touch};
 use stickslip_core::words::counted;
 
 /// Rejects an empty or endless path.

@@ -8,7 +8,8 @@ use crate::limits;
 use crate::nodes::Names;
 use std::collections::HashSet;
 use std::sync::Arc;
-use stickslip_core::model::{Contact, Model, Node, SpaceProblem, Surface};
+use stickslip_core::Model;
+use stickslip_core::model::{Contact, Node, SpaceProblem, Surface};
 use stickslip_core::words::counted;
 
 /// Checks a problem; the texts have been checked.

@@ -65,6 +65,19 @@ pub(super) fn surfaces(spec: &Spec, names: &Names, length: f64) -> Result<Surfac
             pieces = pieces.into_iter().flat_map(cut).collect();
         }
         let several = pieces.len() > 1;
+        if surface.endless && surface.past_ends != 0.0 {
+            bail!(
+                at!["surfaces", k, "past_ends"],
+                "an endless surface has no ends; leave past_ends out"
+            );
+        }
+        if !(0.0..=1.0).contains(&surface.past_ends) {
+            bail!(
+                at!["surfaces", k, "past_ends"],
+                "must be between 0 and 1, in lengths of the last element"
+            );
+        }
+        let ends: Vec<_> = pieces.iter().map(|piece| end_nodes(piece)).collect();
         if several && surface.endless {
             bail!(
                 at!["surfaces", k, "endless"],
@@ -72,7 +85,7 @@ pub(super) fn surfaces(spec: &Spec, names: &Names, length: f64) -> Result<Surfac
                 pieces.len()
             );
         }
-        for (number, elements) in (1..).zip(pieces) {
+        for ((number, elements), own) in (1..).zip(pieces).zip(&ends) {
             if surface.endless && !geometry::straight(&names.nodes, &elements, length) {
                 bail!(
                     at!["surfaces", k, "endless"],
@@ -89,6 +102,8 @@ pub(super) fn surfaces(spec: &Spec, names: &Names, length: f64) -> Result<Surfac
                 elements,
                 rigid: false,
                 endless: surface.endless,
+                past_ends: open_ends(*own, &ends)
+                    .map(|open| if open { 2.0 * surface.past_ends } else { 0.0 }),
                 smooth: Vec::new(),
                 gives: Vec::new(),
             });
@@ -96,6 +111,21 @@ pub(super) fn surfaces(spec: &Spec, names: &Names, length: f64) -> Result<Surfac
     }
     limits::entries("surfaces", all.made.len())?;
     Ok(all)
+}
+
+/// The nodes where a chain begins and where it ends.
+fn end_nodes(elements: &[Vec<usize>]) -> [Option<usize>; 2] {
+    let first = elements.first().and_then(|nodes| nodes.first());
+    let last = elements.last().and_then(|nodes| nodes.last());
+    [first.copied(), last.copied()]
+}
+
+/// Whether no chain, of which these are the ends, continues at the beginning and at the end of one of them.
+fn open_ends([first, last]: [Option<usize>; 2], all: &[[Option<usize>; 2]]) -> [bool; 2] {
+    [
+        all.iter().all(|[_, end]| *end != first),
+        all.iter().all(|[start, _]| *start != last),
+    ]
 }
 
 /// Smooths the surfaces with `smooth`, at the undeformed positions of the nodes.

@@ -30,9 +30,9 @@ pub use history::increments;
 use layout::Layout;
 pub(crate) use layout::Loads;
 pub(crate) use renewed::{Choices, Compiled, Groups, renewed};
+use stickslip_core::Model;
 use stickslip_core::linear::estimate::Estimate;
-use stickslip_core::model::diagonal;
-use stickslip_core::model::{InitialGaps, Model};
+use stickslip_core::model::{InitialGaps, diagonal};
 
 /// Checks a scene.
 pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {

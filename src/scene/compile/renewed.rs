@@ -9,8 +9,9 @@ use super::{history, interface};
 use crate::format::error::{Path, Step};
 use crate::format::paths::ScalarPath;
 use crate::format::spec::{SlaveSpec, Spec};
+use stickslip_core::Model;
 use stickslip_core::linear::estimate::Estimate;
-use stickslip_core::model::{Control, Model};
+use stickslip_core::model::Control;
 
 /// Settings that are used outside the solver too: they move nodes, create surfaces, or make the scene invalid.
 const DEEP: [&str; 4] = ["initial_gaps", "adjust_gap", "point_force", "memory"];

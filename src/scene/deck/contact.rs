@@ -18,6 +18,10 @@ use stickslip_exchange::inp::deck::{Adjust, Faces, Family, Normal, Pair, Tie};
 /// Without a POSITION TOLERANCE, nodes within this fraction of a side's length are tied, as in CalculiX.
 const TOLERANCE: f64 = 0.025;
 
+/// Slave and master often end at the same edge. A slave node that touches stays over its master up to this part of a side beyond
+/// it, and a free one comes to it up to half of that. CalculiX takes 1e-3 of the root of the node's area (source, `gencontelem`).
+const PAST_ENDS: f64 = 2e-3;
+
 /// The contact law between a slave node and the surfaces that it may touch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Laws {
@@ -180,6 +184,8 @@ impl DeckObjects<'_> {
                      stiffness: a node inside would hop between two sides where the normal jumps",
                 );
             }
+            let mut own = all.iter().filter(|other| other.master == touching.master);
+            let by_nodes = own.all(|other| other.laws.by.is_node());
             for id in &ids {
                 self.origin
                     .note(at!["surfaces", self.spec.surfaces.len()], surface.place);
@@ -188,6 +194,7 @@ impl DeckObjects<'_> {
                     along: format!("{MESH}.{id}"),
                     reverse: false,
                     endless: false,
+                    past_ends: if by_nodes { PAST_ENDS } else { 0.0 },
                     smooth,
                     cut,
                 });

@@ -22,7 +22,8 @@ use super::notation;
 use super::spec::{BodySpec, History, LoadSpec, Nodes, SlaveSpec, Spec, SurfaceSpec};
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize};
-use stickslip_core::model::{Friction, InitialState, Mode, Settings, SlavePoints};
+use stickslip_core::model::{Friction, InitialState, SlavePoints};
+use stickslip_core::{Mode, Settings};
 
 /// First word of an interface problem file.
 pub const HEAD: &str = "Contacts";
@@ -211,6 +212,7 @@ impl Problem {
                 along: FLOOR.to_owned(),
                 reverse: false,
                 endless: true,
+                past_ends: 0.0,
                 smooth: false,
                 cut: false,
             }],

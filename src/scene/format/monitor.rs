@@ -1,7 +1,8 @@
 //! `monitors`: the quantities that a scene reports.
 
 use super::described::macros::described;
-use stickslip_core::model::{Axis, Component, Mode};
+use stickslip_core::Mode;
+use stickslip_core::model::{Axis, Component};
 
 described! {
     /// A quantity to report after every converged increment.

@@ -6,7 +6,7 @@
 use super::described::{Described, ScalarPlace, Visit};
 use super::error::{Path, SetError, nearest, quoted};
 use super::spec::Spec;
-use stickslip_core::model::Settings;
+use stickslip_core::Settings;
 
 /// A value set from outside.
 #[derive(Debug, Clone, PartialEq)]

@@ -4,17 +4,18 @@
 //! rejects invalid values. Every field is either required or has the default named in its comment.
 
 use super::arc::ArcSpec;
-use super::contact_law::{ContactLaw, FrictionSpec};
+use super::contact_law::{ContactLaw, FrictionSpec, is_zero};
 use super::described::macros::described;
 use super::given::{Cells, NodeSet, SideSet};
 use super::in_space::SpaceSpec;
 pub use super::loads::{LoadSpec, Scale};
 pub use super::monitor::{MonitorSpec, Quantity};
 use stickslip_core::model::{
-    Component, Control, ElementKind, InitialState, Jumps, Law, Mode, Plane, Settings, SlavePoints,
-    Update, least, on_leg,
+    Component, Control, ElementKind, InitialState, Jumps, Law, Plane, SlavePoints, Update, least,
+    on_leg,
 };
 use stickslip_core::words::is_default;
+use stickslip_core::{Mode, Settings};
 
 /// A point or a vector in the plane, `(x, y)`, in the scene's unit of length.
 pub type Point = (f64, f64);
@@ -502,6 +503,11 @@ described! {
         /// Extend the surface straight beyond both ends; requires a straight, rigid surface. Default: false.
         #[serde(default)]
         pub endless: bool,
+        /// Extend the surface past each of its ends, on the same curve: a slave node that touches stays on it up to this part of
+        /// the first or last element beyond the end, a free one comes to it up to half of that. A node that starts at the end of
+        /// the surface otherwise leaves it as soon as it moves outward at all. Default: 0.
+        #[serde(default, skip_serializing_if = "is_zero")]
+        pub past_ends: f64,
         /// Use one smooth curve through all nodes of the chain, so that the normal does not jump between elements: a cubic from
         /// node to node, whose slope at a node is that of the parabola through the node and its two neighbours. Sharp corners are
         /// rounded too; where a corner is real, define two surfaces. Default: false, each element is a separate curve.

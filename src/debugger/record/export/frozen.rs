@@ -20,18 +20,15 @@ use crate::explain::names;
 use crate::history::verdicts;
 use std::ops::ControlFlow;
 use std::sync::Arc;
-use stickslip_core::contact::record::{ContactRecord, Forced};
 use stickslip_core::interface::minor_history::Cycle;
-use stickslip_core::interface::problem::{InterfaceProblem, ProblemNode};
+use stickslip_core::interface::problem::ProblemNode;
 use stickslip_core::interface::response::InterfaceResponse;
-use stickslip_core::interface::trials::Trials;
-use stickslip_core::model::InitialState;
-use stickslip_core::model::{Bond, Mode, Model, Settings};
-use stickslip_core::step::drive::{RunEnd, Until};
-use stickslip_core::step::event::Outcome;
-use stickslip_core::step::event::{Failure, Position};
-use stickslip_core::step::stepper::Stepper;
+use stickslip_core::model::{Bond, InitialState};
 use stickslip_core::strategy::method;
+use stickslip_core::{
+    ContactRecord, Failure, Forced, InterfaceProblem, Mode, Model, Outcome, Position, RunEnd,
+    Settings, Stepper, Trials, Until,
+};
 use stickslip_linalg::DenseFactors;
 use stickslip_scene::format::condensed::{Contact, Matrix, Problem};
 use stickslip_scene::format::{SceneError, read};

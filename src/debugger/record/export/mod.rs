@@ -26,7 +26,7 @@ mod window;
 
 use export_state::{ExportError, ExportState};
 use std::path::{Path, PathBuf};
-use stickslip_core::step::stepper::Stepper;
+use stickslip_core::Stepper;
 use stickslip_scene::problems::market;
 
 pub use frozen::{FileMismatch, NoExport, Origin, compared, core, whole, writable};

@@ -13,12 +13,9 @@ use crate::explain::names;
 use crate::explain::outline::{self, Bounds, Point, Projection, curve, extent};
 use crate::explain::round_off::RoundOff;
 use stickslip_core::contact::element::SurfaceElement;
-use stickslip_core::contact::record::ContactRecord;
-use stickslip_core::model::{BodyKind, Mode, Model, SolidElement};
-use stickslip_core::step::event::Outcome;
-use stickslip_core::step::state::Status;
-use stickslip_core::step::stepper::Stepper;
+use stickslip_core::model::{BodyKind, SolidElement};
 use stickslip_core::words::counted;
+use stickslip_core::{ContactRecord, Mode, Model, Outcome, Status, Stepper};
 use stickslip_scene::number::{shortest, sig4};
 use stickslip_study::drawn::PlotError;
 use stickslip_study::origin;
@@ -271,6 +268,16 @@ impl ShapeDrawing<'_> {
         }
     }
 
+    /// Draws a curve that labels must not cover.
+    fn line(&mut self, points: &[Point], pen: &Pen) {
+        self.stroke(points, pen);
+        for chain in self.window.inside(&curve(points)) {
+            for pair in chain.windows(2) {
+                self.taken.take_line(pair[0], pair[1]);
+            }
+        }
+    }
+
     /// Undeformed (dashed) and deformed elements.
     fn bodies(&mut self) {
         let model = &self.shown.scene.model;
@@ -284,12 +291,7 @@ impl ShapeDrawing<'_> {
                 .iter()
                 .map(|&node| OBLIQUE.at(model, node))
                 .collect();
-            self.stroke(&points, &before);
-            for chain in self.window.inside(&curve(&points)) {
-                for pair in chain.windows(2) {
-                    self.taken.take_line(pair[0], pair[1]);
-                }
-            }
+            self.line(&points, &before);
         }
         for body in &model.bodies {
             let BodyKind::Solid(solid) = &body.kind else {
@@ -309,12 +311,7 @@ impl ShapeDrawing<'_> {
         }
         for element in lines() {
             let points: Vec<Point> = element.iter().map(|&node| (self.now)(node)).collect();
-            self.stroke(&points, &pen(2.0, DARK));
-            for chain in self.window.inside(&curve(&points)) {
-                for pair in chain.windows(2) {
-                    self.taken.take_line(pair[0], pair[1]);
-                }
-            }
+            self.line(&points, &pen(2.0, DARK));
         }
     }
 

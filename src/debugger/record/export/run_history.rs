@@ -5,9 +5,7 @@ use super::frozen::Origin;
 use crate::explain::trail;
 use crate::history::strip::Strip;
 use std::sync::Arc;
-use stickslip_core::step::event::{Event, Outcome};
-use stickslip_core::step::state::{State, Status};
-use stickslip_core::step::stepper::Stepper;
+use stickslip_core::{Event, Outcome, State, Status, Stepper};
 use stickslip_scene::Scene;
 
 /// Records of a run so far.

@@ -3,7 +3,7 @@
 use super::export_state::COLUMNS;
 use crate::explain::names;
 use crate::history::strip::{PointKind, Strip};
-use stickslip_core::model::{Mode, Model};
+use stickslip_core::{Mode, Model};
 use stickslip_scene::number::shortest;
 use stickslip_study::drawn::PlotError;
 use stickslip_study::sheet::{Anchor, BLACK, Colour, GREY, LABEL, MARGIN, SMALL, Sheet, widest};

@@ -3,7 +3,7 @@
 use super::export_state::{ExportError, ExportState, problem};
 use super::frozen::{self, Origin};
 use crate::explain::names;
-use stickslip_core::step::stepper::Stepper;
+use stickslip_core::Stepper;
 use stickslip_exchange::fclib;
 use stickslip_scene::Scene;
 use stickslip_scene::format::notation;

@@ -12,8 +12,7 @@ use crate::session::background_messages::{BackgroundReply, Reported};
 use crate::session::trials::try_all;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::Sender;
-use stickslip_core::step::solver::{ReportedProblem, SolverLost};
-use stickslip_core::step::state::{State, Status};
+use stickslip_core::{ReportedProblem, SolverLost, State, Status};
 
 impl Helper {
     /// The interface problem that an attached solver reports for a state.

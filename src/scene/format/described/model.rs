@@ -7,10 +7,10 @@ use super::{Choice, Described, Scalar, ScalarPlace, Visit, field_of, one_of, typ
 use stickslip_core::model::documented::text;
 use stickslip_core::model::{
     AtCycle, AtLimit, Axis, BoundUpdate, Component, Control, ElementKind, Friction, Geometry,
-    InitialGaps, InitialState, Jumps, Law, LinearSolver, Mode, Plane, PointForce, Refactor,
-    ResidualMethod, SearchMode, Settings, SlavePoints, SlipCount, Sticking, Strategy, TieRule,
-    Touch, Update,
+    InitialGaps, InitialState, Jumps, Law, LinearSolver, Plane, PointForce, Refactor,
+    ResidualMethod, SearchMode, SlavePoints, SlipCount, Sticking, TieRule, Touch, Update,
 };
+use stickslip_core::{Mode, Settings, Strategy};
 
 macro_rules! fields {
     ($name:ident { $($part:ident),* $(,)? }) => {

@@ -1,7 +1,7 @@
-//! Parallel work on bodies.
+//! Parallel work on bodies and on parts of one.
 //!
-//! The core starts no threads. A caller that has threads passes an [`Executor`]; every part of the work is the same with any executor
-//! and writes to separate memory, so the results are bit-identical on one thread and on many.
+//! Neither this package nor the core starts threads. A caller that has threads passes an [`Executor`]; every part of the work is the
+//! same with any executor and writes to separate memory, so the results are bit-identical on one thread and on many.
 
 /// Runs two tasks, in parallel or in sequence.
 pub trait Executor: Send + Sync {
@@ -21,11 +21,7 @@ impl Executor for SequentialExecutor {
 }
 
 /// Does a job on every item.
-pub(crate) fn each<T: Send>(
-    executor: &dyn Executor,
-    items: &mut [T],
-    job: &(dyn Fn(&mut T) + Sync),
-) {
+pub fn each<T: Send>(executor: &dyn Executor, items: &mut [T], job: &(dyn Fn(&mut T) + Sync)) {
     match items {
         [] => {}
         [item] => job(item),

@@ -1,0 +1,133 @@
+//! The structure of L in the sparse LDLᵀ: its supernodes, columns with the same rows below them, found by faer.
+
+use super::pattern::lists;
+use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
+use std::ops::Range;
+
+/// Columns of L with the same rows below them.
+pub(super) struct Supernode {
+    /// Its columns.
+    pub columns: Range<usize>,
+    /// Where the rows below them are, in [`Supernodes::rows`].
+    rows: Range<usize>,
+    /// Its range of the values: column by column, the rows of the columns themselves, valid from the diagonal on, then those below.
+    pub values: Range<usize>,
+}
+
+/// The supernodes of L in elimination order.
+pub(super) struct Supernodes {
+    pub nodes: Vec<Supernode>,
+    /// The supernode of each column.
+    node_of: Vec<usize>,
+    rows: Vec<usize>,
+    /// The earlier supernodes with rows among the columns of each one, ascending: where each list starts, and the lists.
+    starts: Vec<usize>,
+    earlier: Vec<usize>,
+}
+
+/// A column of L and its pivot.
+pub(super) struct Column<'a> {
+    pub place: usize,
+    pub pivot: f64,
+    /// Entries of the supernode's own rows below the diagonal, and of `rows`.
+    pub own: &'a [f64],
+    pub below: &'a [f64],
+    pub rows: &'a [usize],
+}
+
+impl Supernode {
+    pub fn width(&self) -> usize {
+        self.columns.len()
+    }
+
+    /// Number of rows, its own included.
+    pub fn height(&self) -> usize {
+        self.columns.len() + self.rows.len()
+    }
+
+    /// A column of the supernode's values.
+    pub fn column<'a>(&self, values: &'a [f64], k: usize) -> &'a [f64] {
+        let first = self.values.start + k * self.height();
+        &values[first..first + self.height()]
+    }
+}
+
+impl Supernodes {
+    pub fn from_symbolic(symbolic: &SymbolicSupernodalCholesky<usize>) -> Self {
+        let count = symbolic.n_supernodes();
+        let values = symbolic.col_ptr_for_val();
+        let mut nodes = Vec::with_capacity(count);
+        let (mut node_of, mut rows) = (vec![0; symbolic.nrows()], Vec::new());
+        for s in 0..count {
+            let node = symbolic.supernode(s);
+            let columns = node.start()..symbolic.supernode_end()[s];
+            node_of[columns.clone()].fill(s);
+            let first = rows.len();
+            rows.extend_from_slice(node.pattern());
+            nodes.push(Supernode {
+                columns,
+                rows: first..rows.len(),
+                values: values[s]..values[s + 1],
+            });
+        }
+        let mut pairs: Vec<(usize, usize)> = Vec::new();
+        for (d, node) in nodes.iter().enumerate() {
+            let reached = rows[node.rows.clone()].iter().map(|&row| node_of[row]);
+            pairs.extend(reached.map(|s| (s, d)));
+        }
+        pairs.dedup();
+        let (starts, earlier) = lists(count, || pairs.iter().copied());
+        Supernodes {
+            nodes,
+            node_of,
+            rows,
+            starts,
+            earlier,
+        }
+    }
+
+    /// The rows below a supernode's columns.
+    pub fn rows(&self, s: usize) -> &[usize] {
+        &self.rows[self.nodes[s].rows.clone()]
+    }
+
+    /// The rows of a supernode from the first of these columns on, and how many are among the columns.
+    pub fn shared(&self, d: usize, columns: &Range<usize>) -> (&[usize], usize) {
+        let rows = self.rows(d);
+        let rows = &rows[rows.partition_point(|&row| row < columns.start)..];
+        (rows, rows.partition_point(|&row| row < columns.end))
+    }
+
+    /// The supernodes that change a later one.
+    pub fn earlier(&self, s: usize) -> &[usize] {
+        &self.earlier[self.starts[s]..self.starts[s + 1]]
+    }
+
+    /// The first supernode that one changes.
+    pub fn parent(&self, s: usize) -> Option<usize> {
+        self.rows(s).first().map(|&row| self.node_of[row])
+    }
+
+    /// The columns from `first` on, in elimination order.
+    pub fn columns<'a>(
+        &'a self,
+        values: &'a [f64],
+        first: usize,
+    ) -> impl Iterator<Item = Column<'a>> {
+        let nodes = self.nodes.partition_point(|node| node.columns.end <= first);
+        (nodes..self.nodes.len()).flat_map(move |s| {
+            let (node, rows) = (&self.nodes[s], self.rows(s));
+            let start = node.columns.start;
+            (first.saturating_sub(start)..node.width()).map(move |k| {
+                let (own, below) = node.column(values, k).split_at(node.width());
+                Column {
+                    place: start + k,
+                    pivot: own[k],
+                    own: &own[k + 1..],
+                    below,
+                    rows,
+                }
+            })
+        })
+    }
+}
