@@ -47,8 +47,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         return write_hand_in(to, args.force);
     }
     if !args.collect.is_empty() {
-        say(&class_table(&args.collect)?)?;
-        return Ok(Exit::Good);
+        return collect(&args.collect);
     }
     let Some(name) = &args.lesson else {
         say(&list()?)?;
@@ -92,15 +91,25 @@ fn write_hand_in(to: &Path, force: bool) -> Result<Exit, Error> {
     Ok(Exit::Good)
 }
 
-/// The table of a class, lessons in teaching order.
-fn class_table(files: &[PathBuf]) -> Result<String, Error> {
+/// Prints the table of a class, lessons in teaching order. Files that cannot be read are named and left out.
+fn collect(files: &[PathBuf]) -> Result<Exit, Error> {
     let read = |file: &PathBuf| match file.exists() {
         true => Progress::read(file).map_err(Error::usage),
         false => Err(usage!("{}: no such file", file.display())),
     };
-    let class = files.iter().map(read).collect::<Result<Vec<_>, _>>()?;
+    let (class, unread): (Vec<_>, Vec<_>) = files.iter().map(read).partition(Result::is_ok);
+    for error in unread.iter().filter_map(|result| result.as_ref().err()) {
+        notify(&error.to_string());
+    }
+    let class: Vec<Progress> = class.into_iter().flatten().collect();
     let order: Vec<&str> = teach::list().iter().map(|lesson| lesson.name).collect();
-    Ok(hand_in::class_table(&class, &order))
+    if !class.is_empty() {
+        say(&hand_in::class_table(&class, &order))?;
+    }
+    match unread.len() {
+        0 => Ok(Exit::Good),
+        left_out => Err(usage!("{left_out} of {} files left out", files.len())),
+    }
 }
 
 /// The built-in lessons, one per line, with the user's progress.

@@ -46,7 +46,7 @@ macro_rules! pages {
 }
 
 pages! {
-    tour "tour" "pages/tour.md" "Five minutes with problem 01, and a case that cycles";
+    tour "tour" "pages/tour.md" "The first ten minutes: a lesson, problem 01, and a case that cycles";
     diagnosing "diagnosing" "pages/diagnosing.md" "From \"it does not converge\" to the cause and a remedy";
     lessons "lessons" "pages/lessons.md" "Guided lessons, and how to write one";
     teaching "teaching" "pages/teaching.md" "A course of six sessions, for lecturers";

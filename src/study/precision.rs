@@ -30,6 +30,9 @@ pub const ROUND_OFF: f64 = 4096.0 * f64::EPSILON;
 /// Costs and errors that differ by less than this part are ties.
 pub(super) const TIE: f64 = 0.02;
 
+/// There is no run that the others could be compared with.
+const NO_RUN: &str = "no run finished, so there is no reference; compare settings that converge, such as `--over settings.strategy=ladder,newton`";
+
 /// A monitor that stays below this part of another of its kind is measured by the other's scale.
 const FLAT: f64 = 1e-6;
 
@@ -248,7 +251,7 @@ fn truth(
             let (k, m) = by_fineness(all)
                 .last()
                 .copied()
-                .ok_or_else(|| wrong("no run finished, so there is no reference".to_owned()))?;
+                .ok_or_else(|| wrong(NO_RUN.to_owned()))?;
             let series = &chart.series[m.point.series].name;
             let name = format!("the finest run of the set ({series}, {})", m.point.name);
             Ok((Reference::from_run(&m.run, name, &m.path), Some(k)))

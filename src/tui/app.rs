@@ -137,6 +137,8 @@ pub struct App {
     pub mouse: bool,
     /// Whether pictures consist of octants instead of braille.
     pub octants: bool,
+    /// Whether that depends on the terminal.
+    pub finds_octants: bool,
     /// The area of the last draw.
     pub area: Rect,
     /// The page or prompt over the panes.
@@ -214,6 +216,7 @@ impl App {
             finds_colours: false,
             mouse: true,
             octants: false,
+            finds_octants: false,
             area: Rect::new(0, 0, 80, 24),
             overlay: Overlay::None,
             panes: ShownPanes::default(),

@@ -1,7 +1,8 @@
-//! Finds out whether the terminal's background is light, from the environment (`COLORFGBG`) or from the terminal (OSC 11).
+//! Finds out whether the terminal's background is light, from the environment (`COLORFGBG`) or from the terminal (OSC 11), and
+//! which terminal it is (XTVERSION).
 //!
-//! The terminal's reply arrives among the keys, where crossterm reports it as Alt-], letters, and Alt-\\ or Ctrl-G. Nothing waits for
-//! it: the screen changes its colours when it arrives, and keys that turn out not to be a reply are passed on.
+//! The replies arrive among the keys, where crossterm reports them as Alt-] or Alt-P, letters, and Alt-\\ or Ctrl-G. Nothing waits
+//! for them: the screen changes when they arrive, and keys that turn out not to be a reply are passed on.
 
 use crossterm::event::{Event, KeyCode, KeyModifiers};
 use std::collections::VecDeque;
@@ -9,29 +10,40 @@ use std::collections::VecDeque;
 /// Asks for the background colour.
 pub const QUERY: &str = "\x1b]11;?\x1b\\";
 
+/// Asks for the terminal's name and version.
+pub const VERSION_QUERY: &str = "\x1b[>q";
+
 /// Whether `COLORFGBG` (such as `15;0`) names a light background; `None` without it.
 pub fn is_light(colorfgbg: Option<&str>) -> Option<bool> {
     let ground: u8 = colorfgbg?.rsplit(';').next()?.parse().ok()?;
     Some(matches!(ground, 7 | 9..=15))
 }
 
-/// Separates the reply from the keys.
+/// Separates the replies from the keys.
 #[derive(Debug, Default)]
 pub struct Reply {
-    /// Whether a reply is expected.
-    pub expected: bool,
+    /// Whether the background colour is expected.
+    pub expects_colour: bool,
+    /// Whether the terminal's version is expected.
+    pub expects_version: bool,
     /// Keys that may be the start of a reply.
     held: Vec<Event>,
     /// Keys that are not.
     keys: VecDeque<Event>,
     /// Whether the background is light, once the reply is complete.
     pub light: Option<bool>,
+    /// The terminal's name and version, once the reply is complete: `kitty(0.40.0)`.
+    pub version: Option<String>,
 }
 
 impl Reply {
     /// Takes an event from the terminal.
     pub fn push(&mut self, event: Event) {
-        if !self.expected {
+        let expected = [
+            (self.expects_colour, COLOUR),
+            (self.expects_version, VERSION),
+        ];
+        if !expected.iter().any(|(expected, _)| *expected) {
             self.keys.push_back(event);
             return;
         }
@@ -41,16 +53,30 @@ impl Reply {
             return self.release();
         };
         match text.strip_suffix(END) {
-            Some(reply) => match reply.strip_prefix(START).and_then(brightness) {
-                Some(brightness) => {
-                    (self.light, self.expected) = (Some(brightness > 0.5), false);
-                    self.held.clear();
+            Some(reply) if self.take(reply) => self.held.clear(),
+            Some(_) => self.release(),
+            None => {
+                let begins = |start: &str| start.starts_with(&text) || text.starts_with(start);
+                if !expected
+                    .iter()
+                    .any(|(expected, start)| *expected && begins(start))
+                {
+                    self.release();
                 }
-                None => self.release(),
-            },
-            None if START.starts_with(&text) || text.starts_with(START) => {}
-            None => self.release(),
+            }
         }
+    }
+
+    /// Takes a reply without its end; returns false if it is none.
+    fn take(&mut self, reply: &str) -> bool {
+        if let Some(brightness) = reply.strip_prefix(COLOUR).and_then(brightness) {
+            (self.light, self.expects_colour) = (Some(brightness > 0.5), false);
+        } else if let Some(version) = reply.strip_prefix(VERSION) {
+            (self.version, self.expects_version) = (Some(version.to_owned()), false);
+        } else {
+            return false;
+        }
+        true
     }
 
     /// Passes on what was held back, since the reply would have continued.
@@ -64,15 +90,20 @@ impl Reply {
     }
 }
 
-/// Start of a reply, with `\x1b` for Alt, and its end.
-const START: &str = "\x1b]11;rgb:";
+/// Starts of the replies, with `\x1b` for Alt, and their end.
+const COLOUR: &str = "\x1b]11;rgb:";
+const VERSION: &str = "\x1bP>|";
 const END: char = '\x07';
 
 /// A key as the reply's text; `None` if a reply does not contain it.
 fn letter(event: &Event) -> Option<String> {
     let key = event.as_key_press_event()?;
     match (key.code, key.modifiers) {
-        (KeyCode::Char(']'), KeyModifiers::ALT) => Some("\x1b]".into()),
+        (KeyCode::Char(letter @ (']' | 'P')), modifiers)
+            if modifiers.contains(KeyModifiers::ALT) =>
+        {
+            Some(format!("\x1b{letter}"))
+        }
         (KeyCode::Char('\\'), KeyModifiers::ALT) | (KeyCode::Char('g'), KeyModifiers::CONTROL) => {
             Some(END.into())
         }
@@ -121,7 +152,8 @@ mod tests {
 
     fn passed(text: &str) -> (Vec<Event>, Option<bool>) {
         let mut reply = Reply {
-            expected: true,
+            expects_colour: true,
+            expects_version: true,
             ..Reply::default()
         };
         keys(text).into_iter().for_each(|key| reply.push(key));
@@ -139,7 +171,22 @@ mod tests {
             let among = format!("ab{reply}c");
             assert_eq!(passed(&among), (keys("abc"), Some(light)));
         }
-        for typed in ["\x1b]1n", "\x1b]11;rgb:ff", "q", "\x1b]11;rgb:x/y/z\x07j"] {
+        let mut reply = Reply {
+            expects_version: true,
+            ..Reply::default()
+        };
+        for key in keys("x\x1bP>|foot(1.20.2)\x1b\\y") {
+            reply.push(key);
+        }
+        assert_eq!(reply.version.as_deref(), Some("foot(1.20.2)"));
+        assert_eq!(std::iter::from_fn(|| reply.next()).count(), 2);
+        for typed in [
+            "\x1bPx",
+            "\x1b]1n",
+            "\x1b]11;rgb:ff",
+            "q",
+            "\x1b]11;rgb:x/y/z\x07j",
+        ] {
             assert_eq!(passed(typed), (keys(typed), None), "{typed:?}");
         }
     }

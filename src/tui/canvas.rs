@@ -33,13 +33,18 @@ impl Canvas {
 
     /// Draws a straight line, clipped to the canvas.
     pub fn line(&mut self, from: Dot, to: Dot, style: Style) {
+        self.dotted(from, to, style, 1);
+    }
+
+    /// Draws every dot of a straight line whose number, from its start, is a multiple of `every`.
+    pub fn dotted(&mut self, from: Dot, to: Dot, style: Style, every: usize) {
         let Some((from, to)) = clip(from, to, [0.0; 2], self.size()) else {
             return;
         };
         let length = (to[0] - from[0]).abs().max((to[1] - from[1]).abs());
         // Steps of exactly one dot could skip one by round-off.
         let steps = (length + 1e-6).ceil();
-        for step in 0..=steps as usize {
+        for step in (0..=steps as usize).step_by(every) {
             let part = step as f64 / steps;
             self.dot(mix(from, to, part), style);
         }
@@ -113,12 +118,27 @@ pub fn use_octants(buffer: &mut Buffer) {
     }
 }
 
-/// Whether the environment names a terminal that draws octants: Ghostty from version 1.2 on.
-pub fn has_octants(variable: impl Fn(&str) -> Option<String>) -> bool {
-    let version = variable("TERM_PROGRAM_VERSION").unwrap_or_default();
-    let mut parts = version.split('.').map(|part| part.parse::<u32>().ok());
-    let version = (parts.next().flatten(), parts.next().flatten());
-    variable("TERM_PROGRAM").as_deref() == Some("ghostty") && version >= (Some(1), Some(2))
+/// Terminals that draw octants themselves, with the first version that does, as they answer XTVERSION. Sources: kitty's changelog of
+/// 0.40.0; VTE's commit 38064959, first in 0.78.0; notcurses, which relies on them in foot from 1.20 on; Ghostty's release 1.2.
+/// Others have them in some fonts only, which a program cannot find out. Sextants would be coarser than braille: three rows of dots
+/// instead of four.
+const OCTANT_TERMINALS: [(&str, [u32; 2]); 4] = [
+    ("foot", [1, 20]),
+    ("ghostty", [1, 2]),
+    ("kitty", [0, 40]),
+    ("VTE", [7800, 0]),
+];
+
+/// Whether a terminal with this name and version, such as `kitty(0.40.0)`, draws octants.
+pub fn has_octants(version: &str) -> bool {
+    let (name, version) = version
+        .split_once([' ', '('])
+        .unwrap_or((version, Default::default()));
+    let mut parts = version.split(|c: char| !c.is_ascii_digit());
+    let mut part = || parts.next().and_then(|part| part.parse().ok()).unwrap_or(0);
+    let version = [part(), part()];
+    let known = OCTANT_TERMINALS.iter().find(|(own, _)| *own == name);
+    known.is_some_and(|(_, first)| version >= *first)
 }
 
 /// Bits of the braille dots in Unicode, by row and column.
@@ -157,15 +177,24 @@ mod tests {
 
     #[test]
     fn only_a_terminal_known_to_draw_octants_has_them() {
-        let on = |program: &'static str, version: &'static str| {
-            has_octants(move |name| match name {
-                "TERM_PROGRAM" => Some(program.to_owned()),
-                _ => Some(version.to_owned()),
-            })
-        };
-        assert!(on("ghostty", "1.2.0") && on("ghostty", "2.0"));
-        assert!(!on("ghostty", "1.1.3") && !on("ghostty", "") && !on("tmux", "3.5"));
-        assert!(!has_octants(|_| None));
+        for version in [
+            "ghostty 1.2.0",
+            "kitty(0.40.0)",
+            "foot(1.20.2)",
+            "VTE(7802)",
+        ] {
+            assert!(has_octants(version), "{version}");
+        }
+        for version in [
+            "ghostty 1.1.3",
+            "kitty(0.39.1)",
+            "VTE(7602)",
+            "tmux 3.5a",
+            "kitty",
+            "",
+        ] {
+            assert!(!has_octants(version), "{version}");
+        }
     }
 
     #[test]

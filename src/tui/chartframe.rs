@@ -1,5 +1,6 @@
 //! The frame of a chart: a vertical axis with labels on the left, a row of labels below, and the plot area between them.
 
+use crate::paint;
 use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::Rect;
 use ratatui::style::Style;
@@ -80,7 +81,7 @@ impl ChartFrame {
     /// Writes a glyph at that cell.
     pub fn mark(&self, buffer: &mut Buffer, at: (usize, f64), glyph: &str, style: Style) {
         if let Some(cell) = self.cell(buffer, at.0, at.1) {
-            cell.set_symbol(glyph).set_style(style);
+            paint::mark(cell, glyph, style);
         }
     }
 }

@@ -15,7 +15,7 @@ pub struct Column {
 }
 
 /// Maximum width of an iteration.
-const WIDEST: usize = 6;
+const WIDEST: usize = 16;
 
 /// The iterations around the cursor that fit between `left` and the right edge, with the cursor in the middle if there are enough
 /// on both sides. A rule before an iteration takes one more column. Iterations that leave room are set apart.

@@ -131,7 +131,7 @@ impl ShownPanes {
 pub struct Choice {
     /// The user's choice.
     pub panes: ShownPanes,
-    /// Number of slave nodes, which is the number of table rows.
+    /// Number of slave nodes that the table shows.
     pub slaves: usize,
     /// Whether the scene has a shape to draw; otherwise the timeline replaces it.
     pub has_shape: bool,

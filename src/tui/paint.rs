@@ -1,9 +1,9 @@
 //! Drawing helpers shared by all panes.
 
 use crate::theme::Theme;
-use ratatui::buffer::Buffer;
+use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::Rect;
-use ratatui::style::Style;
+use ratatui::style::{Modifier, Style};
 use ratatui::text::{Line, Span};
 use ratatui::widgets::{Block, BorderType, Clear, Widget};
 use stickslip_scene::shown;
@@ -81,6 +81,12 @@ pub fn label(buffer: &mut Buffer, (x, y): (u16, u16), text: &str, style: Style, 
     Clear.render(area, buffer);
     buffer.set_style(area, theme.ground);
     buffer.set_stringn(x, y, text, usize::from(area.width), style);
+}
+
+/// Writes a glyph into a cell in this style alone: without the dim or bold of a line below it.
+pub fn mark(cell: &mut Cell, glyph: &str, style: Style) {
+    cell.modifier = Modifier::empty();
+    cell.set_symbol(glyph).set_style(style);
 }
 
 /// Wraps a text into lines of this width, with a blank on either side.

@@ -111,10 +111,8 @@ fn configured(config: Config, session: Option<Session>) -> Debugger {
     let mut debugger = Debugger::new(Theme::chosen(colours), offers(), session);
     let app = &mut debugger.app;
     (app.keymap, app.colours, app.mouse) = (config.keymap, colours, config.mouse);
-    app.octants = match config.dots {
-        Dots::Auto => canvas::has_octants(|name| std::env::var(name).ok()),
-        dots => dots == Dots::Octants,
-    };
+    app.octants = config.dots == Dots::Octants;
+    app.finds_octants = config.dots == Dots::Auto;
     app.finds_colours = chosen.is_none() && !wants_no_colour();
     debugger
 }
@@ -124,7 +122,10 @@ fn run_on(mut debugger: Debugger) -> Result<(), Error> {
     let ended = Terminal::enter().and_then(|mut terminal| {
         terminal.set_mouse(debugger.app.mouse)?;
         if debugger.app.finds_colours {
-            terminal.ask_background()?;
+            terminal.ask(background::QUERY)?;
+        }
+        if debugger.app.finds_octants {
+            terminal.ask(background::VERSION_QUERY)?;
         }
         // The terminal is restored before anything is printed.
         events(&mut debugger, &mut terminal, &signals)
@@ -170,7 +171,8 @@ fn events(debugger: &mut Debugger, terminal: &mut Terminal, signals: &Signals) -
     let mut changed = true;
     let mut drawn = Instant::now();
     let mut reply = Reply::default();
-    reply.expected = debugger.app.finds_colours;
+    reply.expects_colour = debugger.app.finds_colours;
+    reply.expects_version = debugger.app.finds_octants;
     while signals.end().is_none() {
         changed |= debugger.advance();
         while let Some(outside) = debugger.take_request() {
@@ -197,6 +199,10 @@ fn events(debugger: &mut Debugger, terminal: &mut Terminal, signals: &Signals) -
         if let Some(light) = reply.light.take() {
             changed = true;
             debugger.app.find_colours(light);
+        }
+        if let Some(version) = reply.version.take() {
+            changed = true;
+            debugger.app.octants = canvas::has_octants(&version);
         }
         while let Some(event) = input {
             changed = true;
@@ -231,7 +237,7 @@ fn next_event(wait: Duration, reply: &mut Reply) -> io::Result<Option<Event>> {
     while next.is_none() && event::poll(wait.max(LEAST_WAIT))? {
         reply.push(event::read()?);
         next = reply.next();
-        if reply.light.is_some() {
+        if reply.light.is_some() || reply.version.is_some() {
             return Ok(next);
         }
     }

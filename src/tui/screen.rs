@@ -81,7 +81,7 @@ pub fn places(app: &App, view: Option<&View>, area: Rect) -> ScreenAreas {
     let model = view.map(|view| view.model);
     let choice = Choice {
         panes: app.panes,
-        slaves: model.map_or(0, |model| model.contacts.len()),
+        slaves: view.map_or(0, |view| app.rows(view)),
         has_shape: model.is_none_or(|model| model.finished.is_none()),
         lesson: rows,
     };

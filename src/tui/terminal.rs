@@ -6,7 +6,6 @@
 //! over and restoring, so a signal in between cannot leave either incomplete.
 
 use crate::app::App;
-use crate::background;
 use crate::event::{Event, KeyCode, KeyEvent, Modifiers, MouseAction, MouseEvent};
 use crate::screen;
 use crate::view::View;
@@ -83,9 +82,9 @@ impl Terminal {
         console::report_mouse(on)
     }
 
-    /// Asks for the background colour; the reply arrives among the keys.
-    pub fn ask_background(&mut self) -> io::Result<()> {
-        stdout().write_all(background::QUERY.as_bytes())?;
+    /// Asks the terminal something; the reply arrives among the keys.
+    pub fn ask(&mut self, query: &str) -> io::Result<()> {
+        stdout().write_all(query.as_bytes())?;
         stdout().flush()
     }
 

@@ -286,6 +286,11 @@ impl<'a> View<'a> {
         }
     }
 
+    /// Whether any node is not at its reference position.
+    pub fn is_deformed(&self) -> bool {
+        self.frame().state.u.iter().any(|u| *u != 0.0)
+    }
+
     /// Position of a node with its displacement magnified.
     pub fn magnified(&self, node: usize, by: (f64, Projection)) -> [f64; 2] {
         outline::magnified(self.model, &self.frame().state.u, node, by)

@@ -38,8 +38,12 @@ fn each_deck_is_explained_by_its_cause_and_the_advised_lines_help_in_calculix() 
         let first = &run.findings[0];
         assert_eq!(first.rule, row.rule, "{}: {first:?}", row.deck);
         assert_eq!(first.lines, row.cure, "{}", row.deck);
-        assert!(row.outcome.starts_with("failed"), "{}", row.deck);
+        let without_contact = |outcome: &str| outcome.ends_with("without contact");
+        let failed = row.outcome.starts_with("failed");
+        assert!(failed || without_contact(&row.outcome), "{}", row.deck);
         assert!(row.cured.starts_with("converged"), "{}", row.deck);
+        let apart = row.deck == "aside";
+        assert_eq!(without_contact(&row.cured), apart, "{}", row.deck);
     }
 }
 
@@ -50,7 +54,7 @@ fn rules_are_silent_on_the_cured_decks() {
         .filter(|row| root().join(format!("causes/{}.inp", row.deck)).is_file())
     {
         let failing = causes(&text(&row.deck));
-        let record_only = row.rule == "increments used up" || row.deck == "direct";
+        let record_only = ["increments", "clearance", "direct"].contains(&row.deck.as_str());
         assert_eq!(
             failing.contains(&row.rule.as_str()),
             !record_only,
@@ -126,6 +130,37 @@ fn a_body_that_supports_keep_open_is_held_where_it_is_free() {
     let found = examine(Some(&DeckShape::new(&deck)), None);
     assert_eq!(found[0].rule, "held by open contact");
     assert_eq!(found[0].lines, "*BOUNDARY\nTOP, 1, 1, 0.\nTOP, 2, 2, 0.");
+}
+
+/// Loads along the surface, or away from it, do not close the gap.
+#[test]
+fn a_gap_is_closed_along_the_normal() {
+    for (load, away) in [("TOP, 1, 50.", false), ("TOP, 3, 50.", true)] {
+        let deck = deck(&text("open").replace("TOP, 3, -50.", load));
+        let found = examine(Some(&DeckShape::new(&deck)), None);
+        assert_eq!(found[0].rule, "held by open contact");
+        let lines = "*BOUNDARY\nTOP, 1, 1, 0.\nTOP, 2, 2, 0.\nTOP, 3, 3, -0.063";
+        assert_eq!(found[0].lines, lines);
+        assert_eq!(found[0].cause.ends_with(", away from it"), away);
+    }
+}
+
+/// Without the .cvg, iterations without contact elements are not known.
+#[test]
+fn a_run_whose_contact_never_closed_has_one_finding() {
+    let run = run(&root(), "clearance");
+    let rules: Vec<_> = run.findings.iter().map(|found| found.rule).collect();
+    assert_eq!(rules, ["contact never closed"]);
+    let alone = examine(None, Some(&run));
+    assert_eq!(alone.len(), 1);
+    assert!(alone[0].lines.is_empty());
+    let mut unknown = CalculixRun::clone(&run);
+    unknown
+        .files
+        .iterations
+        .iter_mut()
+        .for_each(|at| at.norms = None);
+    assert_eq!(examine(None, Some(&unknown)), []);
 }
 
 #[test]

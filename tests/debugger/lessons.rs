@@ -390,7 +390,7 @@ fn a_wrong_sign_is_recognised_and_a_hint_costs_the_point() {
         "{told}"
     );
     debugger.type_keys("a - 0 . 0 6 Enter Space s H");
-    let Paragraph::Wrong(told) = last(&debugger) else {
+    let Paragraph::Hint(told) = last(&debugger) else {
         panic!("a hint is no answer")
     };
     assert!(told.starts_with("Look at row free"), "{told}");

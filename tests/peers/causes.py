@@ -94,6 +94,12 @@ def main_cases():
     made = deck([([LOAD], TIME)], gap=0.05)
     cure = "*BOUNDARY\nTOP, 1, 1, 0.\nTOP, 2, 2, 0.\nTOP, 3, 3, -0.063"
     yield "open", "held by open contact", made, cure, swap(made, LOAD, cure)
+    made = deck([([HOLD + "\n" + LOAD], TIME)], x=5.0)
+    cure = "*BOUNDARY\nTOP, 1, 1, 0.\nTOP, 2, 2, 0.\nTOP, 3, 3, 0."
+    yield "aside", "held by open contact", made, cure, swap(made, HOLD + "\n" + LOAD, f"{cure}\n{LOAD}")
+    made = deck(usual, gap=0.05)
+    cure = "*CONTACT PAIR, INTERACTION=RUB, TYPE=NODE TO SURFACE, ADJUST=0.052"
+    yield "clearance", "contact never closed", made, cure, swap(made, cure.replace(", ADJUST=0.052", ""), cure)
     made = deck([([LOAD + "\nTOP, 1, 5."], TIME)], friction="")
     cure = "*BOUNDARY\nTOP, 1, 1, 0.\nTOP, 2, 2, 0."
     yield "slide", "free to slide", made, cure, swap(made, LOAD + "\nTOP, 1, 5.", f"{cure}\n{LOAD}\nTOP, 1, 5.")
@@ -164,7 +170,8 @@ def run(folder, name, lines):
             os.remove(file)
     reached = max([float(row[4]) for row in rows] or [0.0])
     if done.returncode == 0:
-        return f"converged, {len(rows) - cuts} increments"
+        touched = os.path.getsize(os.path.join(folder, name + ".cel")) > 0
+        return f"converged, {len(rows) - cuts} increments" + ("" if touched else ", without contact")
     return f"failed at time {reached:.3g}, {cuts} attempts given up"
 
 

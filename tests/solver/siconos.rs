@@ -165,18 +165,19 @@ fn a_broken_file_is_refused_with_its_line() {
     ];
     for (text, line, part) in cases {
         let broken = read(&text).expect_err(part);
-        assert_eq!(broken.line, line, "{broken:?} in\n{text}");
+        let (at_line, column) = broken.at.unwrap();
+        assert_eq!(at_line, line, "{broken:?} in\n{text}");
         assert!(broken.message.contains(part), "{broken:?}");
         let error = Scene::from_text("x.dat", &text, &[])
             .unwrap_err()
             .to_string();
-        let place = format!("x.dat:{line}:{}: ", broken.column);
+        let place = format!("x.dat:{line}:{column}: ");
         assert!(error.starts_with(&place), "{error}");
     }
     // The column is that of the word.
     for (wrong, column) in [("3,0e-01", 20), ("nan", 20)] {
         let broken = read(&dense.replacen("3.0e-01", wrong, 1)).unwrap_err();
-        assert_eq!(broken.column, column);
+        assert_eq!(broken.at.unwrap().1, column);
     }
 }
 

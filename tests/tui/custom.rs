@@ -106,7 +106,7 @@ fn a_click_selects_a_branch_a_step_of_the_timeline_and_a_pane() {
     let mut debugger = self::debugger("osc-two6", "c t", (80, 24));
     let mark = place(&debugger, "Timeline", "▼");
     assert_eq!(debugger.session.as_ref().unwrap().cursor(), 6);
-    click(&mut debugger, (mark.0 - 12, mark.1 + 1));
+    click(&mut debugger, (mark.0 - 18, mark.1 + 1));
     assert_eq!(
         debugger.session.as_ref().unwrap().cursor(),
         4,
@@ -114,7 +114,7 @@ fn a_click_selects_a_branch_a_step_of_the_timeline_and_a_pane() {
         text(&debugger)
     );
     let mark = place(&debugger, "Timeline", "▼");
-    click(&mut debugger, (mark.0 + 6, mark.1 + 2));
+    click(&mut debugger, (mark.0 + 9, mark.1 + 2));
     assert_eq!(debugger.session.as_ref().unwrap().cursor(), 5);
     assert_eq!(debugger.app.selected, 1);
 

@@ -64,8 +64,8 @@ pub fn describe(model: &Model, failure: &Failure) -> String {
         ),
         Failure::NotFound(why) => not_found(*why),
         Failure::Singular(Singular::Rigid { motions }) => {
-            let motions = motions.iter().map(motion);
-            format!("unrestrained rigid motion: {}", first_of(motions, MOST_NODES, "; "))
+            let bodies = motions.chunk_by(|a, b| a.body == b.body).map(body_motions);
+            format!("unrestrained rigid motion: {}", first_of(bodies, MOST_NODES, "; "))
         }
         Failure::Singular(Singular::Unexplained) => {
             "the equations are singular although every body is held: a limit point, or redundant constraints".into()
@@ -144,24 +144,22 @@ fn not_found(why: NotFound) -> String {
     }
 }
 
-fn motion(rigid: &RigidMotion) -> String {
-    let body = &rigid.body;
-    match rigid.motion {
-        LooseMotion::Translation([x, y]) => {
-            format!(
-                "body {body} can move along ({}, {})",
-                rounded(x),
-                rounded(y)
-            )
-        }
-        LooseMotion::Rotation([x, y]) => {
-            format!(
-                "body {body} can rotate about ({}, {})",
-                rounded(x),
-                rounded(y)
-            )
-        }
-    }
+/// The motions of one body.
+fn body_motions(motions: &[RigidMotion]) -> String {
+    let mut before = "";
+    let each = motions.iter().map(|rigid| {
+        let (verb, [x, y]) = match rigid.motion {
+            LooseMotion::Translation(along) => ("move along", along),
+            LooseMotion::Rotation(about) => ("rotate about", about),
+        };
+        let verb = match std::mem::replace(&mut before, verb) == verb {
+            true => String::new(),
+            false => format!("{verb} "),
+        };
+        format!("{verb}({}, {})", rounded(x), rounded(y))
+    });
+    let each: Vec<String> = each.collect();
+    format!("body {} can {}", motions[0].body, each.join(" and "))
 }
 
 /// Four decimals without trailing zeros: coordinates for people.

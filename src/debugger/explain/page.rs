@@ -215,6 +215,13 @@ impl DiagnosisPage {
             facts.into_iter().partition(|fact| fact.part == Part::Why);
         let more = why.split_off(why.len().min(MOST_WHY)).into_iter();
         rest.extend(more.map(|fact| Fact::new(Part::Details, fact.text)));
+        // Several motions of a body have the same contacts.
+        let mut seen: Vec<String> = why.iter().map(|fact| fact.text.clone()).collect();
+        rest.retain(|fact| {
+            let is_new = fact.part != Part::Details || !seen.contains(&fact.text);
+            seen.push(fact.text.clone());
+            is_new
+        });
         let of = |part: Part| {
             let lines = rest.iter().filter(|fact| fact.part == part);
             let lines: Vec<String> = lines.map(|fact| fact.text.clone()).collect();
@@ -317,8 +324,8 @@ impl PageBuilder {
                 Advice::Remedy(_) => {}
             }
         }
-        let sound = format!("{}.", sound(state.next, state));
-        page.facts.push(Fact::new(Part::Details, sound));
+        page.facts
+            .push(Fact::new(Part::Details, sound(state.next, state)));
         page
     }
 

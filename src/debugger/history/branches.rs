@@ -103,9 +103,15 @@ pub fn cost(tree: &Tree, branch: usize, places: std::ops::Range<usize>) -> Cost 
         .filter_map(|at| tree.point(branch, at))
         .map(|(_, strip)| strip);
     let mut cost = Cost::default();
+    // A cycle and what continues from it end the same major.
+    let mut ended = None;
     for strip in strips.filter(|strip| strip.kind.is_solved()) {
         cost.minors += 1;
-        cost.majors += u64::from(strip.kind.ends_major());
+        let at = strip.position;
+        let major = Some((at.increment, at.attempt, at.major));
+        if strip.kind.ends_major() && ended != major {
+            (cost.majors, ended) = (cost.majors + 1, major);
+        }
         cost.increments += u64::from(strip.kind.is_accepted());
         cost.seconds += f64::from(strip.seconds);
     }

@@ -70,8 +70,8 @@ pub struct GivenAnswer {
 pub struct Remark {
     /// The text.
     pub text: String,
-    /// Whether the answer was right.
-    pub good: bool,
+    /// Whether the answer was right; `None` for a hint.
+    pub good: Option<bool>,
 }
 
 /// A part of the lesson's page.
@@ -87,6 +87,8 @@ pub enum Paragraph {
     Right(String),
     /// Reply to a wrong answer.
     Wrong(String),
+    /// A hint that was asked for.
+    Hint(String),
 }
 
 impl Tutor {
@@ -313,7 +315,10 @@ impl Tutor {
             Ok(Some(text)) => (text, true),
             Err(why) => (why, false),
         };
-        self.remark = Some(Remark { text, good });
+        self.remark = Some(Remark {
+            text,
+            good: Some(good),
+        });
         self.done = good;
         match good {
             true => self.note("done", true),
@@ -379,7 +384,10 @@ impl Tutor {
             if over && !enough {
                 text += " The history ends here, so there are no more predictions.";
             }
-            self.remark = Some(Remark { text, good });
+            self.remark = Some(Remark {
+                text,
+                good: Some(good),
+            });
             self.note(word, good);
             return Ok(());
         }
@@ -395,7 +403,10 @@ impl Tutor {
             (false, true) => format!("No. It is {}", question.explained()),
             (false, false) => question.reply_to_wrong(word),
         };
-        self.remark = Some(Remark { text, good });
+        self.remark = Some(Remark {
+            text,
+            good: Some(good),
+        });
         self.note(word, good);
         Ok(())
     }
@@ -413,7 +424,7 @@ impl Tutor {
             (Some(LessonStep::Reach(_)), None) => self.task_hint.clone(),
             _ => return Err(LessonRefusal::NothingAsked),
         };
-        self.remark = Some(Remark { text, good: false });
+        self.remark = Some(Remark { text, good: None });
         self.note(HINT, false);
         Ok(())
     }
@@ -481,8 +492,9 @@ impl Tutor {
         }
         if let Some(Remark { text, good }) = &self.remark {
             page.push(match good {
-                true => Paragraph::Right(text.clone()),
-                false => Paragraph::Wrong(text.clone()),
+                Some(true) => Paragraph::Right(text.clone()),
+                Some(false) => Paragraph::Wrong(text.clone()),
+                None => Paragraph::Hint(text.clone()),
             });
         }
         page

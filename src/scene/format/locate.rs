@@ -275,15 +275,20 @@ impl<'a> Scan<'a> {
         }
     }
 
-    /// Moves past the name, any `Some(` and the opening bracket of the value that starts here. Returns whether it has a name, and
-    /// the bracket.
+    /// Moves past the name and the opening bracket of the value that starts here, and returns them.
+    fn head(&mut self) -> Option<(Option<&'a str>, char)> {
+        self.skip_blanks();
+        let name = self.word();
+        self.skip_blanks();
+        let bracket = self.peek().filter(|c| matches!(c, '(' | '[' | '{'))?;
+        self.bump();
+        Some((name, bracket))
+    }
+
+    /// As [`head`](Self::head), and moves past any `Some(`; returns whether there is a name.
     fn open(&mut self) -> Option<(bool, char)> {
         loop {
-            self.skip_blanks();
-            let name = self.word();
-            self.skip_blanks();
-            let bracket = self.peek().filter(|c| matches!(c, '(' | '[' | '{'))?;
-            self.bump();
+            let (name, bracket) = self.head()?;
             if name != Some("Some") {
                 return Some((name.is_some(), bracket));
             }
@@ -323,11 +328,7 @@ impl<'a> Scan<'a> {
     /// Moves to the start of the inner value that contains a byte; the separator before a value belongs to it. Returns the step
     /// to it, if there is one; `None` without such a value.
     fn enter_at(&mut self, byte: usize) -> Option<Option<Step>> {
-        self.skip_blanks();
-        let name = self.word();
-        self.skip_blanks();
-        let bracket = self.peek().filter(|c| matches!(c, '(' | '[' | '{'))?;
-        self.bump();
+        let (name, bracket) = self.head()?;
         for index in 0.. {
             if byte < self.at {
                 return None;

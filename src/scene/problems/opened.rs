@@ -42,7 +42,7 @@ pub(crate) fn siconos(name: &str, text: &str, memory: Option<f64>) -> Result<Pro
     match siconos::local_within(text, memory, super::blocks_fit) {
         Ok(local) => Ok(siconos::problem(local, &title(name))),
         Err(broken) => Err(SceneError {
-            at: Some((broken.line, broken.column)),
+            at: Some(broken.at.unwrap_or((1, 1))),
             ..SceneError::whole(name, broken.message)
         }),
     }

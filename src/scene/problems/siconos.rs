@@ -12,6 +12,7 @@ use crate::limits;
 use stickslip_core::linear::sparse_contacts::FEW;
 use stickslip_core::model::{Friction, InitialState, LinearSolver};
 use stickslip_core::{Mode, Settings, Strategy};
+use stickslip_exchange::format_error::FormatError;
 use stickslip_exchange::problem::{self, Local};
 use stickslip_exchange::siconos;
 pub use stickslip_exchange::siconos::Storage;
@@ -27,17 +28,6 @@ pub struct Friction2d {
     pub mu: Vec<f64>,
 }
 
-/// An error in a file.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct SiconosError {
-    /// Line, from 1; that of the last word if the file ends too early, and 1 if no line is at fault.
-    pub line: usize,
-    /// Column, from 1.
-    pub column: usize,
-    /// What is wrong and what is expected.
-    pub message: String,
-}
-
 /// Whether a text could be such a file: it starts with a number, as no scene does.
 pub fn is_one(text: &str) -> bool {
     text.trim_start().starts_with(|c: char| c.is_ascii_digit())
@@ -47,23 +37,15 @@ pub fn is_one(text: &str) -> bool {
 ///
 /// # Errors
 /// The error and its line.
-pub fn read(text: &str) -> Result<Friction2d, SiconosError> {
-    read_within(text, None)
-}
-
-/// Reads such a file with a memory limit (GB; `None`: the free memory).
-///
-/// # Errors
-/// As [`read`].
-pub fn read_within(text: &str, memory: Option<f64>) -> Result<Friction2d, SiconosError> {
-    let local = local_within(text, memory, super::fits)?;
+pub fn read(text: &str) -> Result<Friction2d, FormatError> {
+    let local = local_within(text, None, super::fits)?;
     match local.dimension() {
         2 => Ok(Friction2d::from_local(local)),
-        other => Err(SiconosError {
-            line: 1,
-            column: 1,
-            message: format!("the dimension is {other}; it must be 2"),
-        }),
+        other => Err(FormatError::at(
+            1,
+            1,
+            format!("the dimension is {other}; it must be 2"),
+        )),
     }
 }
 
@@ -75,21 +57,11 @@ pub(super) fn local_within(
     text: &str,
     memory: Option<f64>,
     fits: fn(usize, Option<f64>) -> Result<(), String>,
-) -> Result<Local, SiconosError> {
-    let broken = |at: Option<(usize, usize)>, message| {
-        let (line, column) = at.unwrap_or((1, 1));
-        SiconosError {
-            line,
-            column,
-            message,
-        }
-    };
+) -> Result<Local, FormatError> {
     // Checked before anything of that size is read.
-    let (contacts, place) =
-        siconos::contacts(text).map_err(|wrong| broken(wrong.at, wrong.message))?;
-    fits(contacts, memory).map_err(|why| broken(Some(place), why))?;
-    let problem = siconos::read(text).map_err(|wrong| broken(wrong.at, wrong.message))?;
-    local(problem, memory).map_err(|why| broken(None, why))
+    let (contacts, (line, column)) = siconos::contacts(text)?;
+    fits(contacts, memory).map_err(|why| FormatError::at(line, column, why))?;
+    local(siconos::read(text)?, memory).map_err(FormatError::whole)
 }
 
 /// Condenses a problem of any form to its contacts, with a memory limit (GB; `None`: the free memory).

@@ -6,12 +6,12 @@ use crate::copied::NamedText;
 use crate::layout::Pane;
 use crate::paint;
 use crate::pane_entry::{PaneEntry, frame};
+use crate::theme;
 use crate::view::View;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use ratatui::style::Style;
 use ratatui::text::{Line, Span};
-use stickslip_debugger::explain::names;
 use stickslip_debugger::history::compare::{self, Sameness, Side};
 use stickslip_debugger::history::tree::Tree;
 use stickslip_debugger::history::verdicts::{BranchEnd, Summary};
@@ -24,7 +24,7 @@ use unicode_width::UnicodeWidthStr;
 const SIDE: usize = 32;
 const NAME: usize = 12;
 /// Width of a mode in it, and least width of a number.
-const MODE: usize = 8;
+const MODE: usize = 4;
 const NUMBER: usize = 8;
 
 /// The pane.
@@ -220,7 +220,7 @@ fn comparison(
         theme.faint,
         of(&|side| number::sig2(side.residual)),
     ));
-    let heads = format!("{:<MODE$} {:<rest$} F_t", "mode", "F_n", rest = number - 1);
+    let heads = format!("{:<MODE$} {:<rest$} F_t", "m→n", "F_n", rest = number - 1);
     lines.push(row("node", theme.faint, [heads.clone(), heads]));
     let round_off = view.round_off();
     for slave in 0..view.model.contacts.len() {
@@ -237,7 +237,8 @@ fn comparison(
                     .concat(),
                 None => String::new(),
             };
-            format!("{:<MODE$}{numbers}", names::mode(node.next))
+            let modes = format!("{}→{}", theme::letter(node.mode), theme::letter(node.next));
+            format!("{modes:<MODE$}{numbers}")
         };
         let name = format!(
             "{}{}",

@@ -271,7 +271,7 @@ fn draw_trail(
             false => ("○", theme.mode(point.mode)),
         };
         if let Some(cell) = canvas.cell(*at).and_then(|at| buffer.cell_mut(at)) {
-            cell.set_symbol(glyph).set_style(style);
+            paint::mark(cell, glyph, style);
         }
     }
 }
@@ -323,7 +323,7 @@ fn cobweb(buffer: &mut Buffer, area: Rect, trail: &[TrailPoint], app: &App, view
     let theme = &app.theme;
     let factor = trail::factor(trail);
     let heading = match factor {
-        Some(factor) => format!("T_max: change ×{} per iteration", sig4(factor)),
+        Some(factor) => format!("T_max changes: ×{}", sig4(factor)),
         None => "T_max by iteration".into(),
     };
     let area = headed(buffer, area, &heading, app);
@@ -364,7 +364,7 @@ fn cobweb(buffer: &mut Buffer, area: Rect, trail: &[TrailPoint], app: &App, view
         .map(|point| [point.t_max_used - origin, point.t_max - origin]);
     let now = last.and_then(|last| canvas.cell(dot(last)));
     if let Some(cell) = now.and_then(|at| buffer.cell_mut(at)) {
-        cell.set_symbol("●").set_style(theme.strong);
+        paint::mark(cell, "●", theme.strong);
     }
     frame.axis(buffer, theme.faint);
     frame.tick(buffer, 0, &sig2(high), theme.faint);

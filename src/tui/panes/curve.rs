@@ -119,7 +119,7 @@ fn chart(
     canvas.render(buffer);
     let now = dots.last().and_then(|dot| canvas.cell(*dot));
     if let Some(cell) = now.and_then(|at| buffer.cell_mut(at)) {
-        cell.set_symbol("●").set_style(theme.strong);
+        paint::mark(cell, "●", theme.strong);
     }
     axes(buffer, frame, x, y, theme);
 }

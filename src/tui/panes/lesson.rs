@@ -121,7 +121,9 @@ pub fn tutor_lines(tutor: &Tutor, width: usize, theme: &Theme) -> paint::Lines {
 /// The tutor's reply to the last answer.
 fn result_lines(tutor: &Tutor, width: usize, theme: &Theme) -> paint::Lines {
     match tutor.page().last() {
-        Some(part @ (Paragraph::Right(_) | Paragraph::Wrong(_))) => paragraph(part, width, theme),
+        Some(part @ (Paragraph::Right(_) | Paragraph::Wrong(_) | Paragraph::Hint(_))) => {
+            paragraph(part, width, theme)
+        }
         _ => Vec::new(),
     }
 }
@@ -133,6 +135,7 @@ fn paragraph(part: &Paragraph, width: usize, theme: &Theme) -> paint::Lines {
         Paragraph::Option(number, text) => wrapped(&format!("{number} "), text, width, theme.text),
         Paragraph::Right(text) => wrapped("✓ ", text, width, theme.good),
         Paragraph::Wrong(text) => wrapped("✗ ", text, width, theme.warning),
+        Paragraph::Hint(text) => wrapped("hint: ", text, width, theme.text),
     }
 }
 

@@ -11,7 +11,6 @@ use ratatui::layout::{Position, Rect};
 use ratatui::style::Style;
 use ratatui::text::{Line, Span};
 use stickslip_debugger::explain::remedies::{self, COLUMNS, RemedyTrial, TrialEnd, rank};
-use stickslip_scene::shown;
 use unicode_width::UnicodeWidthStr;
 
 /// Indices into [`COLUMNS`], the most important first; a narrow screen shows those that fit.
@@ -81,7 +80,10 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let width = usize::from(inner.width);
     let rows: Vec<[String; 10]> = tried.trials.iter().map(remedies::row).collect();
     let shown = shown(&rows, width);
-    let names = width.saturating_sub(3 + shown.iter().map(|(_, w)| w + 2).sum::<usize>());
+    let longest = tried.trials.iter().map(|trial| trial.label.width() + 3);
+    let names = width
+        .saturating_sub(3 + shown.iter().map(|(_, w)| w + 2).sum::<usize>())
+        .min(longest.max().unwrap_or(0).max(NAME));
     let mut head = vec![Span::raw(format!("   {:<names$}", "remedy"))];
     head.extend(
         shown
@@ -119,9 +121,10 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
             ),
             Span::raw(" ".repeat(names.saturating_sub(name.width()))),
         ];
-        spans.extend(shown.iter().map(|&(k, w)| {
+        spans.extend(shown.iter().flat_map(|&(k, w)| {
             let style = if k == 0 { style } else { theme.text };
-            Span::styled(format!("  {}", shown::padded_before(&row[k], w)), style)
+            let before = " ".repeat(2 + w.saturating_sub(row[k].width()));
+            [Span::raw(before), Span::styled(row[k].clone(), style)]
         }));
         lines.push(Line::from(spans));
     }

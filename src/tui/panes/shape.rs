@@ -48,6 +48,8 @@ const MOTION: f64 = 0.15;
 const LOAD: f64 = 0.14;
 /// Caption of the reference configuration.
 const UNLOADED: &str = " faint: unloaded";
+/// Loads and prescribed motions have every second dot, so that they differ from contact forces without colour.
+const SPARSE: usize = 2;
 /// Dots between a load and its node.
 const CLEAR: f64 = 4.0;
 /// Cells between two slave nodes from which on their names are written.
@@ -106,7 +108,7 @@ pub fn picture(buffer: &mut Buffer, inner: Rect, app: &App, view: &View) -> Opti
     surfaces(&mut canvas, &window, app, view);
     let given = shown_conditions(view, &window);
     for (line, style, _) in given.arrows.iter().map(|one| drawn(one, &window, app)) {
-        canvas.line(line[0], line[1], style);
+        canvas.dotted(line[0], line[1], style, SPARSE);
     }
     let (forces, longest) = forces(&window, view);
     let style = app.theme.bad.remove_modifier(Modifier::REVERSED);
@@ -551,7 +553,9 @@ fn caption(buffer: &mut Buffer, inner: Rect, shown: Scales, moves: bool, app: &A
         let text = format!(" {} view (V)  ", app.camera.projection.word());
         spans.push(Span::styled(text, theme.strong));
     }
-    spans.push(Span::styled(UNLOADED, theme.faint));
+    if view.is_deformed() {
+        spans.push(Span::styled(UNLOADED, theme.faint));
+    }
     if longest > 0.0 {
         spans.push(Span::styled(
             format!("   longest force {}", number::sig4(longest)),
@@ -574,6 +578,9 @@ fn caption(buffer: &mut Buffer, inner: Rect, shown: Scales, moves: bool, app: &A
     let mut line = Line::from(spans);
     if line.width() > usize::from(inner.width) {
         line.spans.retain(|span| span.content != UNLOADED);
+    }
+    if let Some(first) = line.spans.first_mut() {
+        first.content = format!(" {}", first.content.trim_start()).into();
     }
     line.render(
         Rect {

@@ -279,9 +279,15 @@ fn outcome(app: &App, view: &View, width: u16) -> paint::Lines {
     if !aside.is_empty() {
         match lines.last_mut() {
             Some(last) if last.width() + 3 + aside.width() <= width as usize => {
-                last.push_span(Span::styled(format!("   {aside}"), theme.warning));
+                last.spans.iter_mut().for_each(|span| span.style = style);
+                last.style = Style::new();
+                last.push_span(Span::raw("   "));
+                last.push_span(Span::styled(aside, theme.warning));
             }
-            _ => lines.push(Line::styled(format!("   {aside}"), theme.warning)),
+            _ => lines.push(Line::from(vec![
+                Span::raw("   "),
+                Span::styled(aside, theme.warning),
+            ])),
         }
     }
     lines

@@ -72,19 +72,7 @@ pub struct PointState {
 
 /// The gradients at a Gauss point in a given shape.
 fn gradients<const N: usize>(parent: &Parent<N>, at: &[[f64; 2]; N]) -> Gradients<N> {
-    let mut j = [[0.0; 2]; 2];
-    for (x, d) in at.iter().zip(&parent.d) {
-        for a in 0..2 {
-            for b in 0..2 {
-                j[a][b] += d[a] * x[b];
-            }
-        }
-    }
-    let det = j[0][0] * j[1][1] - j[0][1] * j[1][0];
-    let inverse = [
-        [j[1][1] / det, -j[0][1] / det],
-        [-j[1][0] / det, j[0][0] / det],
-    ];
+    let (inverse, det) = inverse(slope(at, &parent.d));
     let turned = |d: [f64; 2]| {
         [
             inverse[0][0] * d[0] + inverse[0][1] * d[1],
@@ -95,6 +83,16 @@ fn gradients<const N: usize>(parent: &Parent<N>, at: &[[f64; 2]; N]) -> Gradient
         grad: parent.d.map(turned),
         area: det * parent.weight,
     }
+}
+
+/// The inverse of a matrix, and its determinant.
+fn inverse(m: [[f64; 2]; 2]) -> ([[f64; 2]; 2], f64) {
+    let det = m[0][0] * m[1][1] - m[0][1] * m[1][0];
+    let inverse = [
+        [m[1][1] / det, -m[0][1] / det],
+        [-m[1][0] / det, m[0][0] / det],
+    ];
+    (inverse, det)
 }
 
 /// H = ∂u/∂X.
@@ -117,12 +115,8 @@ pub(super) fn slope_at<const N: usize>(
     u: &[[f64; 2]; N],
 ) -> Option<[[f64; 2]; 2]> {
     let (by_x, by_u) = (slope(&parent.d, at), slope(&parent.d, u));
-    let det = by_x[0][0] * by_x[1][1] - by_x[0][1] * by_x[1][0];
+    let (inverse, det) = inverse(by_x);
     let size = by_x.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
-    let inverse = [
-        [by_x[1][1] / det, -by_x[0][1] / det],
-        [-by_x[1][0] / det, by_x[0][0] / det],
-    ];
     let row = |by_u: [f64; 2]| [0, 1].map(|b| by_u[0] * inverse[0][b] + by_u[1] * inverse[1][b]);
     (det > FLAT * size * size).then(|| by_u.map(row))
 }

@@ -45,15 +45,15 @@ const RULES: &[Rule] = &[
     Deck(pairs::constrained_slaves),
     Record(record::chatter),
     Record(record::capped_correction),
+    Record(record::never_closed),
 ];
 
-/// The findings of all rules, in the order of the rules; none for a run that reached its end.
+/// The findings of all rules, in the order of the rules. A run that reached its end has one at most: that its contact never closed.
 pub fn examine(deck: Option<&DeckShape>, run: Option<&CalculixRun>) -> Vec<RunFinding> {
-    if deck
-        .zip(run)
-        .is_some_and(|(deck, run)| record::is_complete(run, deck))
+    if let (Some(shape), Some(run)) = (deck, run)
+        && record::is_complete(run, shape)
     {
-        return Vec::new();
+        return record::never_closed(run, deck);
     }
     let findings = RULES.iter().flat_map(|rule| match (rule, deck, run) {
         (Deck(rule), Some(deck), _) => rule(deck),

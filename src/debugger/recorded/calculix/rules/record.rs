@@ -1,12 +1,14 @@
 //! Rules on the record of a run: increments that ran out, contacts that chatter, corrections at their cap.
 
 use super::super::run::{CalculixRun, Switching};
+use super::pairs::pair_card;
 use super::shape::DeckShape;
-use super::supports::{plain, rounded};
+use super::supports::{open_at_start, plain, rounded, rounded_up};
 use std::collections::BTreeSet;
 use stickslip_core::model::RunFinding;
 use stickslip_exchange::calculix::cel::Slave;
-use stickslip_exchange::calculix::files::End;
+use stickslip_exchange::calculix::cvg::Norms;
+use stickslip_exchange::calculix::files::{End, Iteration};
 use stickslip_scene::number::{shortest, sig4};
 use stickslip_scene::shown::first_of;
 
@@ -45,6 +47,60 @@ pub fn increments_used(run: &CalculixRun, shape: Option<&DeckShape>) -> Vec<RunF
         ),
         cure: format!("more increments (line {})", step.place.line),
         lines: format!("*STEP{nlgeom}, INC={}", 10 * most),
+    }]
+}
+
+/// A run without any contact element. If it reached its end, that is all there is to report.
+pub fn never_closed(run: &CalculixRun, shape: Option<&DeckShape>) -> Vec<RunFinding> {
+    let files = &run.files;
+    let is_open = |norms: &Norms| norms.elements == 0;
+    let norms = |at: &Iteration| at.norms.as_ref().is_some_and(is_open);
+    let all_open = files.iterations.iter().all(norms);
+    if files.iterations.is_empty() || !all_open {
+        return Vec::new();
+    }
+    let known = shape.map(open_at_start).unwrap_or_default();
+    if !known.is_empty() {
+        // The rules on the deck have said it of a run that failed.
+        let complete = shape.is_some_and(|shape| is_complete(run, shape));
+        return if complete { known } else { Vec::new() };
+    }
+    let pairs = shape
+        .iter()
+        .flat_map(|shape| shape.pairs.iter().enumerate());
+    let nearest = pairs.filter_map(|(k, pair)| Some((k, pair, pair.nearest()?)));
+    let nearest = nearest.min_by(|a, b| a.2.gap.total_cmp(&b.2.gap));
+    let cause = format!(
+        "no contact element was active in any of {} iterations",
+        files.iterations.len()
+    );
+    let Some((shape, (k, pair, node))) = shape.zip(nearest) else {
+        return vec![RunFinding {
+            rule: "contact never closed",
+            cause,
+            cure: "displacements or loads that close the gaps, if the parts should touch".into(),
+            lines: String::new(),
+        }];
+    };
+    let card = &shape.deck.pairs[k];
+    vec![RunFinding {
+        rule: "contact never closed",
+        cause: format!(
+            "{cause}; the smallest gap at the start is {}, node {} of {}",
+            sig4(node.gap),
+            shape.deck.nodes[node.node].label,
+            shape.pair_name(pair)
+        ),
+        cure: format!(
+            "if they should touch, move the slave nodes onto the master (*CONTACT PAIR before line {}), or displace a body \
+             by more than the gap",
+            card.place.line
+        ),
+        lines: pair_card(
+            shape.deck,
+            card,
+            &format!(", ADJUST={}", plain(rounded_up(node.gap))),
+        ),
     }]
 }
 

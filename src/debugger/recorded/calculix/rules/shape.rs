@@ -14,6 +14,8 @@ pub type Vector = Vector3<f64>;
 const TIE_TOLERANCE: f64 = 0.025;
 /// Gaps below this count as closed, in sizes of a slave face.
 const CLOSED: f64 = 1e-3;
+/// Nodes up to this far beyond the edge of the master are in front of it, in sizes of a master face.
+const EDGE: f64 = 0.1;
 
 /// A face of an element on a surface.
 #[derive(Debug, Clone)]
@@ -159,7 +161,8 @@ impl PairShape {
 
     /// The slave node with the smallest gap in front of the master.
     pub fn nearest(&self) -> Option<&SlaveGap> {
-        let in_front = self.nodes.iter().filter(|n| n.beyond <= self.sizes[1]);
+        let edge = EDGE * self.sizes[1];
+        let in_front = self.nodes.iter().filter(|n| n.beyond <= edge);
         in_front.min_by(|a, b| a.gap.total_cmp(&b.gap))
     }
 }

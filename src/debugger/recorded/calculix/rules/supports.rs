@@ -299,45 +299,70 @@ pub fn open_at_start(shape: &DeckShape) -> Vec<RunFinding> {
         let closed = pairs
             .iter()
             .any(|pair| pair.nodes.iter().any(|n| pair.is_closed(n)));
-        let nearest = pairs
-            .iter()
-            .filter_map(|pair| Some((*pair, pair.nearest()?)));
-        let (pair, node) = nearest.min_by(|a, b| a.1.gap.total_cmp(&b.1.gap))?;
+        let first = *pairs.first()?;
         if closed {
             return None;
         }
+        let nearest = pairs
+            .iter()
+            .filter_map(|pair| Some((*pair, pair.nearest()?)));
+        let nearest = nearest.min_by(|a, b| a.1.gap.total_cmp(&b.1.gap));
         let name = shape.group_name(group);
         let force = motion.force;
         let set = shape.set_name(&motion.loaded);
-        let along = force.iamax();
-        let travel = rounded_up(1.2 * node.gap).copysign(force[along]);
         let modes = shape.modes(group);
         let moves = |k: usize| free.iter().any(|motion| motion[k].abs() > 1e-3);
+        // The direction in which the body closes the gap.
+        let closing = nearest.map(|(pair, node)| {
+            let normal = pair.masters[node.face].normal;
+            let is_slave = pair.groups[0] == group;
+            (node.gap, if is_slave { -normal } else { normal })
+        });
         // Supports that keep the body from following the load also keep it from closing the gap.
-        let closes = moves(along);
+        let closes = closing.filter(|(_, to)| moves(to.iamax()));
         let held = (0..3).filter(|&k| match closes {
-            true => modes[k] && k != along,
-            false => moves(k),
+            Some((_, to)) => modes[k] && k != to.iamax(),
+            None => moves(k),
         });
         let mut lines: Vec<String> = held
             .map(|k| format!("{set}, {0}, {0}, 0.", k + 1))
             .collect();
-        lines.extend(closes.then(|| format!("{set}, {0}, {0}, {travel}", along + 1)));
-        let cure = match closes {
-            true => format!(
+        lines.extend(closes.map(|(gap, to)| {
+            let along = to.iamax();
+            let travel = rounded_up(1.2 * gap / to[along].abs()).copysign(to[along]);
+            format!("{set}, {0}, {0}, {travel}", along + 1)
+        }));
+        let cure = match (closing, closes) {
+            (_, Some(_)) => format!(
                 "close the gap first: a step before the load with a displacement of {set} by more than the gap"
             ),
-            false => format!("hold {name} in these directions until the contact is closed"),
+            (Some(_), None) => {
+                format!("hold {name} in these directions until the contact is closed")
+            }
+            (None, None) => format!("move {name} to its contact, or hold it in these directions"),
+        };
+        let open = match nearest {
+            Some((pair, node)) => format!(
+                "smallest gap {}, node {} of {}",
+                sig4(node.gap),
+                shape.deck.nodes[node.node].label,
+                shape.pair_name(pair)
+            ),
+            None => format!(
+                "no slave node is in front of the master, {}",
+                shape.pair_name(first)
+            ),
+        };
+        let away = match closing.is_some_and(|(_, to)| to.dot(&force) < -LOADED * force.norm()) {
+            true => ", away from it",
+            false => "",
         };
         Some(RunFinding {
             rule: "held by open contact",
             cause: format!(
-                "{name} is free {} until it touches: all its contact is open at the start (smallest gap {}, \
-                 node {} of {}), and step 1 loads it with the force {}",
+                "{name} is free {} until it touches: all its contact is open at the start ({open}), and step 1 loads it \
+                 with the force {}{away}",
                 words(free),
-                sig4(node.gap),
-                shape.deck.nodes[node.node].label,
-                shape.pair_name(pair),
                 vector(force)
             ),
             cure,
