@@ -60,7 +60,7 @@ fn state(debugger: &Debugger) -> (String, Vec<String>) {
 /// Types keys without waiting for anything until the last is typed.
 fn at_once(scene: &str, names: &str) -> Debugger {
     let mut debugger = debugger(scene);
-    for key in names.split_whitespace().filter_map(keys::press) {
+    for key in keys::presses(names).unwrap() {
         debugger.key(&key);
     }
     debugger.settle();
