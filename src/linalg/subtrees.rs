@@ -8,8 +8,7 @@
 //!
 //! Supernodes in different subtrees do not change each other, so the supernodes are split into two halves and a top that follows
 //! both; each half is split in the same way. The top has few but large supernodes, whose columns are changed in parallel. Every
-//! entry is computed from the same terms in the same order as in a single pass, so the bits do not depend on the split. (They are
-//! also those of faer's own sequential factorization.)
+//! entry is computed from the same terms in the same order as in a single pass, so the bits do not depend on the split.
 
 use super::check::SolveError;
 use super::executor::Executor;
@@ -182,7 +181,9 @@ impl Costs {
         let mut size = vec![1; l.nodes.len()];
         let mut before = vec![0.0];
         for (s, node) in l.nodes.iter().enumerate() {
-            before.push(before[s] + node.width() as f64 * (node.height() as f64).powi(2));
+            let (width, height) = (node.width() as f64, node.height() as f64);
+            let own = width * (height * (height - width) + width * width / 3.0);
+            before.push(before[s] + own);
             if s + 1 - first[s] != size[s] {
                 return None;
             }

@@ -44,14 +44,6 @@ impl App {
         }
     }
 
-    /// How many rows the table needs.
-    pub fn rows(&self, view: &View) -> usize {
-        match self.filter {
-            Filter::All => view.model.contacts.len(),
-            _ => self.order(view).len(),
-        }
-    }
-
     /// The slave nodes of the table, in order. The selected one is always included.
     pub fn order(&self, view: &View) -> Vec<usize> {
         let count = view.model.contacts.len();

@@ -21,6 +21,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 use ratatui::widgets::Widget;
+use stickslip_debugger::action::Filter;
 use stickslip_debugger::session::Session;
 use stickslip_scene::shown;
 
@@ -81,7 +82,10 @@ pub fn places(app: &App, view: Option<&View>, area: Rect) -> ScreenAreas {
     let model = view.map(|view| view.model);
     let choice = Choice {
         panes: app.panes,
-        slaves: view.map_or(0, |view| app.rows(view)),
+        slaves: view.map_or(0, |view| match app.filter {
+            Filter::All => view.model.contacts.len(),
+            _ => app.order(view).len(),
+        }),
         has_shape: model.is_none_or(|model| model.finished.is_none()),
         lesson: rows,
     };

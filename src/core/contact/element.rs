@@ -103,8 +103,8 @@ impl<'a> SurfaceElement<'a> {
         }
     }
 
-    /// Whether only nodes that touch are still over the surface at ξ: past the middle of what extends beyond a node. A node that
-    /// bulges past an end is then not freed, draws back, and touches again.
+    /// Whether ξ is in the outer half of an extension, where only nodes that already touch are over the surface. Without this margin
+    /// a node that bulges past an end would be freed, draw back, and touch again.
     pub fn only_holds(&self, xi: f64) -> bool {
         let (along, both) = (self.along(xi), self.scale - 1.0);
         let [before, behind] = [both - self.middle, both + self.middle];

@@ -18,8 +18,8 @@ use stickslip_exchange::inp::deck::{Adjust, Faces, Family, Normal, Pair, Tie};
 /// Without a POSITION TOLERANCE, nodes within this fraction of a side's length are tied, as in CalculiX.
 const TOLERANCE: f64 = 0.025;
 
-/// Slave and master often end at the same edge. A slave node that touches stays over its master up to this part of a side beyond
-/// it, and a free one comes to it up to half of that. CalculiX takes 1e-3 of the root of the node's area (source, `gencontelem`).
+/// `past_ends` of a master, because slave and master often end at the same edge. CalculiX (`gencontelem`) allows a distance of 1e-3
+/// times the root of the slave node's area.
 const PAST_ENDS: f64 = 2e-3;
 
 /// The contact law between a slave node and the surfaces that it may touch.

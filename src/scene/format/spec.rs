@@ -503,9 +503,9 @@ described! {
         /// Extend the surface straight beyond both ends; requires a straight, rigid surface. Default: false.
         #[serde(default)]
         pub endless: bool,
-        /// Extend the surface past each of its ends, on the same curve: a slave node that touches stays on it up to this part of
-        /// the first or last element beyond the end, a free one comes to it up to half of that. A node that starts at the end of
-        /// the surface otherwise leaves it as soon as it moves outward at all. Default: 0.
+        /// Extend the surface past each of its ends by this part of its first or last element, on the same curve. A slave node in
+        /// contact stays in contact up to there; a free node can come into contact up to half of that. Without an extension, a node
+        /// at an end of the surface leaves it with the smallest motion outward. Default: 0.
         #[serde(default, skip_serializing_if = "is_zero")]
         pub past_ends: f64,
         /// Use one smooth curve through all nodes of the chain, so that the normal does not jump between elements: a cubic from
