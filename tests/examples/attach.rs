@@ -19,12 +19,9 @@ use stickslip::record::command::{BranchTarget, Command, Unit};
 use stickslip::recorded::log::Log;
 use stickslip::session::Session;
 use stickslip::step::event::{Event, Failure, Outcome};
-use stickslip::step::intervene::{Intervention, Refusal};
-use stickslip::step::solver::{Capabilities, RewindSupport, SolverLost};
-use stickslip::step::{Solver, State, Status};
-use stickslip_exchange::attach::message::{
-    Contact, Friction, Id, NodeMessage, Scene, SurfaceMessage,
-};
+use stickslip::step::solver::{Capabilities, Now, RewindSupport, SolverLost};
+use stickslip::step::{Solver, State};
+use stickslip_exchange::attach::message::{Contact, Friction, NodeMessage, Scene, SurfaceMessage};
 
 /// Nodes, their distances from the floor, the stiffness of every spring, and the loads on a node at the load factor 1.
 const GAPS: [f64; 4] = [0.0, 0.01, 0.03, 0.08];
@@ -85,22 +82,15 @@ impl Springs {
 }
 
 impl Solver for Springs {
-    fn model(&self) -> &Arc<Model> {
-        &self.model
+    fn now(&self) -> Now<'_> {
+        Now::new(&self.model, &self.state, &self.event)
     }
 
-    fn state(&self) -> &State {
-        &self.state
+    fn state_mut(&mut self) -> &mut State {
+        &mut self.state
     }
 
-    fn event(&self) -> &Event {
-        &self.event
-    }
-
-    fn step(&mut self) -> Result<bool, SolverLost> {
-        if self.state.status == Status::Finished {
-            return Ok(false);
-        }
+    fn advance(&mut self) -> Result<(), SolverLost> {
         let (nodes, start) = (&self.state.nodes, &self.state.start);
         let load = (start.load_factor + self.state.controls.increment).min(1.0);
         // n is upward: a node that touches has come down by its distance.
@@ -167,17 +157,7 @@ impl Solver for Springs {
         }
         self.state.u = Arc::new(u);
         self.state.follow(&self.event, 0);
-        Ok(true)
-    }
-
-    fn restore(&mut self, state: &State) -> Result<(), SolverLost> {
-        self.state.clone_from(state);
         Ok(())
-    }
-
-    fn intervene(&mut self, intervention: &Intervention) -> Result<(), Refusal> {
-        self.capabilities().check(intervention)?;
-        self.state.intervene(&self.model, intervention)
     }
 
     fn capabilities(&self) -> Capabilities {
@@ -206,18 +186,12 @@ fn told() -> Scene {
     nodes.push(node("floor.1".into(), [6.0, 0.0]));
     nodes.push(node("floor.2".into(), [-1.0, 0.0]));
     let contact = |k: usize| Contact {
-        id: Id::Number(k as i64),
-        name: String::new(),
-        node: k,
         surface: Some("floor".into()),
         friction: Friction {
             mu: Some(MU),
             ..Friction::default()
         },
-        mode: Mode::Free,
-        area: None,
-        gives: None,
-        tied: false,
+        ..Contact::new(k)
     };
     Scene {
         title: "Nodes on springs over a rough floor".into(),

@@ -386,6 +386,23 @@ pub struct Contact {
     pub tied: bool,
 }
 
+impl Contact {
+    /// The contact of a node, which may touch anything, without friction.
+    pub fn new(node: usize) -> Contact {
+        Contact {
+            id: Id::Number(node as i64),
+            name: String::new(),
+            node,
+            surface: None,
+            friction: Friction::default(),
+            mode: Mode::Free,
+            area: None,
+            gives: None,
+            tied: false,
+        }
+    }
+}
+
 /// Coulomb's law: |F_t| <= mu F_n + cohesion.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Friction {
