@@ -1,7 +1,7 @@
 //! Writes a frozen interface problem as a condensed scene ([`stickslip_scene::format::condensed`]) that has the
 //! same minor iterations.
 //!
-//! With springs of stiffness k the problem's relation is `ΔF = start + R (v − ΔF / k)` ([`InterfaceResponse`]);
+//! With springs of stiffness k the problem's relation is `ΔF = start + R (v − ΔF / k)` ([`stickslip_core::interface::response`]);
 //! S* moves by v + p relative to S, where p is prescribed. In the scene the slave node moves by u = −(v + p)
 //! over a floor at rest, under F = F₀ + ΔF. Without the springs,
 //!
