@@ -216,12 +216,14 @@ fn scene(contacts: usize) -> Scene {
     nodes.push(end("right", contacts as f64));
     nodes.push(end("left", -1.0));
     let contact = |k: usize| Contact {
+        id: Id::Number(k as i64),
+        node: k,
         surface: Some("floor".into()),
         friction: Friction {
             mu: Some(0.3),
             ..Friction::default()
         },
-        ..Contact::new(k)
+        ..Contact::default()
     };
     Scene {
         title: format!("{contacts} contacts"),

@@ -21,7 +21,9 @@ use stickslip::session::Session;
 use stickslip::step::event::{Event, Failure, Outcome};
 use stickslip::step::solver::{Capabilities, Now, RewindSupport, SolverLost};
 use stickslip::step::{Solver, State};
-use stickslip_exchange::attach::message::{Contact, Friction, NodeMessage, Scene, SurfaceMessage};
+use stickslip_exchange::attach::message::{
+    Contact, Friction, Id, NodeMessage, Scene, SurfaceMessage,
+};
 
 /// Nodes, their distances from the floor, the stiffness of every spring, and the loads on a node at the load factor 1.
 const GAPS: [f64; 4] = [0.0, 0.01, 0.03, 0.08];
@@ -186,12 +188,14 @@ fn told() -> Scene {
     nodes.push(node("floor.1".into(), [6.0, 0.0]));
     nodes.push(node("floor.2".into(), [-1.0, 0.0]));
     let contact = |k: usize| Contact {
+        id: Id::Number(k as i64),
+        node: k,
         surface: Some("floor".into()),
         friction: Friction {
             mu: Some(MU),
             ..Friction::default()
         },
-        ..Contact::new(k)
+        ..Contact::default()
     };
     Scene {
         title: "Nodes on springs over a rough floor".into(),

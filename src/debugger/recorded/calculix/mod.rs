@@ -23,7 +23,7 @@ use stickslip_core::step::event::{Event, Failure, Outcome, Position, Words};
 use stickslip_core::step::intervene::{Intervention, Refusal};
 use stickslip_core::step::solver::{Capabilities, Now, RewindSupport, Solver, SolverLost};
 use stickslip_core::step::state::State;
-use stickslip_exchange::attach::message::{self, Level};
+use stickslip_exchange::attach::message::{self, Id, Level};
 use stickslip_exchange::calculix::cel::Slave;
 use stickslip_exchange::calculix::files::End;
 use stickslip_exchange::inp::Deck;
@@ -64,8 +64,10 @@ pub fn open(run: CalculixRun, deck: Option<Deck>) -> Result<OpenedRun, String> {
     let run = explained(run, deck)?;
     let slaves = 0..run.files.slaves.len();
     let contact = |slave: usize| message::Contact {
+        id: Id::Number(slave as i64),
         name: run.slave(slave),
-        ..message::Contact::new(slave)
+        node: slave,
+        ..message::Contact::default()
     };
     let node = |slave: usize| message::NodeMessage {
         name: run.slave(slave),
