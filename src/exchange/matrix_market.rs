@@ -10,8 +10,8 @@
 //! A symmetric matrix is stored by its lower half, a skew-symmetric one by the part below the diagonal. Case and additional words
 //! in the first line do not matter. Patterns, which have no values, and complex matrices are rejected.
 
+use crate::FormatError;
 use crate::bail;
-use crate::format_error::FormatError;
 use crate::problem::{Matrix, is_there};
 use crate::words::{Words, quoted};
 use std::fmt::Write;

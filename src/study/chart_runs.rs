@@ -16,10 +16,9 @@ use super::sweep::{RunError, Sweep};
 use super::sweep_input::Input;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
-use stickslip_core::model::Model;
+use stickslip_core::Model;
 use stickslip_platform::system;
-use stickslip_scene::format::SceneError;
-use stickslip_scene::increments;
+use stickslip_scene::{SceneError, increments};
 
 /// Runs that take this long in total (seconds) are not repeated again.
 const LONG: f64 = 20.0;

@@ -8,7 +8,7 @@ use super::csv::{Table, TableError};
 use super::result::Run;
 use std::path::Path;
 use stickslip_platform::input::{self, TABLE_BYTES};
-use stickslip_scene::embedded::EmbeddedFile;
+use stickslip_scene::EmbeddedFile;
 use stickslip_scene::embedded_all;
 use stickslip_scene::format::error::{quoted, shortened};
 

@@ -21,13 +21,11 @@ use std::convert::Infallible;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use stickslip_core::interface::census::census;
-use stickslip_core::model::{Model, Settings};
-use stickslip_core::step::drive::{RunEnd, Until};
-use stickslip_core::step::stepper::Stepper;
+use stickslip_core::{Model, RunEnd, Settings, Stepper, Until};
 use stickslip_scene::base::{Base, Method};
 use stickslip_scene::format::condensed::{Matrix, Problem};
-use stickslip_scene::format::{SceneError, paths};
-use stickslip_scene::{Scene, increments};
+use stickslip_scene::format::paths;
+use stickslip_scene::{Scene, SceneError, increments};
 
 /// A run whose end violates a condition by more than this, relatively, is not a solution. This is far above the
 /// solver's errors (its tolerance is 1e-11) and far below the violations of wrong states.

@@ -7,9 +7,9 @@ use stickslip_core::step::judged::ALLOWED;
 use stickslip_core::step::state::State as OurState;
 use stickslip_core::words::counted;
 use stickslip_core::{Mode, Model, Position};
+use stickslip_debugger::Fault;
 use stickslip_debugger::explain::names;
 use stickslip_debugger::recorded::decode::WireFrame;
-use stickslip_debugger::recorded::fault::Fault;
 use stickslip_scene::shown;
 
 use std::time::Instant;

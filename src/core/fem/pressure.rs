@@ -17,9 +17,9 @@
 use crate::elements::lagrange::{self, MAX_NODES};
 use crate::fem::continuum;
 use crate::fem::element::{Element, Previous};
-use crate::fem::material::Material;
 use crate::linalg::Pattern;
-use crate::model::{BodyKind, Dofs, Factor, Model, PressedFace, Update};
+use crate::model::{BodyKind, Dofs, Factor, PressedFace, Update};
+use crate::{Material, Model};
 use std::cell::RefCell;
 use std::f64::consts::TAU;
 

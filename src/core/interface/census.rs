@@ -6,11 +6,8 @@
 //! separately and tries only combinations that branch and bound ([`crate::interface::branches`]) does not rule out.
 
 use crate::interface::branches;
-use crate::interface::kinematics::NodeIncrement;
-use crate::interface::problem::{
-    self, Answer, AssumedMode, InterfaceProblem, Margin, NodeAnswer, SINGULAR,
-};
-use crate::interface::response::InterfaceResponse;
+use crate::interface::problem::{self, Answer, Margin, SINGULAR};
+use crate::{AssumedMode, InterfaceProblem, InterfaceResponse, NodeAnswer, NodeIncrement};
 
 /// Maximum number of nodes of a census: 4^8 = 65,536 combinations.
 pub const MOST: usize = 8;

@@ -11,12 +11,8 @@
 //! component; so they hold where the sum of all |x − x*| is at most r. Periods are run one by one until powers of A keep x within
 //! this region forever.
 
-use crate::contact::state::ContactState;
-use crate::interface::method::Method;
-use crate::interface::problem::InterfaceProblem;
-use crate::interface::trials::Trials;
 use crate::linalg::DenseFactors;
-use crate::model::{BoundUpdate, Mode};
+use crate::{BoundUpdate, ContactState, InterfaceProblem, Method, Mode, Trials};
 
 /// Relative distance from the fixed point below which consecutive periods are equal.
 pub const REPEATS: f64 = 1e-12;

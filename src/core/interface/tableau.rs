@@ -7,9 +7,8 @@
 //! all sufficiently small ones; the path is then that of the shifted rows, but the reported values are those of the original
 //! rows.
 
-use crate::interface::method::SearchProgress;
-use crate::interface::response::InterfaceResponse;
 use crate::linalg::DenseFactors;
+use crate::{InterfaceResponse, SearchProgress};
 
 /// Entries of an entering column below this fraction of its largest are zero: for original rows, and for shifted ones, where no
 /// row needs such a small pivot.

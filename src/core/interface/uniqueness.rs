@@ -37,8 +37,8 @@
 //! coefficient that is small relative to the mesh size (Haslinger, Math. Methods Appl. Sci. 5, 1983; Hassani, Ionescu & Oudet,
 //! Int. J. Solids Struct. 44, 2007).
 
+use crate::InterfaceProblem;
 use crate::interface::definite;
-use crate::interface::problem::InterfaceProblem;
 use crate::linalg::DenseFactors;
 
 /// Number of tried scales of α, each twice the previous one, around 1.

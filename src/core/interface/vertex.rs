@@ -7,7 +7,7 @@
 //! they reach F_n = 0, where no mode change is possible. This is analogous to finding a vertex of a polyhedron in linear
 //! programming (Megiddo, ORSA J. Computing 3, 1991).
 
-use crate::interface::problem::{AssumedMode, InterfaceProblem};
+use crate::{AssumedMode, InterfaceProblem};
 
 /// Columns whose remainder is below this fraction of the largest are linearly dependent.
 const DEPENDENT: f64 = 1e-10;

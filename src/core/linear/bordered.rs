@@ -20,8 +20,9 @@
 
 use super::source::{LinearisationPoint, LoadEquation};
 use super::system::System;
+use crate::Model;
 use crate::linalg::SolveError;
-use crate::model::{Factor, Model};
+use crate::model::Factor;
 use crate::plane::dot;
 
 /// A border is singular if its pivot is below this fraction of its terms.

@@ -4,9 +4,8 @@ use super::augmented::{springs, suspicion};
 use super::source::{LinearisationPoint, SolveResult};
 use super::system::{Layout, System};
 use crate::interface::kinematics::through;
-use crate::interface::problem::{InterfaceProblem, ProblemNode};
 use crate::linalg::{Factors, SolveError};
-use crate::model::Model;
+use crate::{InterfaceProblem, Model, ProblemNode};
 
 /// Estimated norm of the scaled inverse above which the interface's system is suspected to be singular. The limit is lower than
 /// for the full system because the springs that support a loose body cost digits before they cancel.

@@ -4,10 +4,10 @@
 //! Motions that satisfy all conditions are resisted only by existing stresses.
 
 use crate::contact::projection::{Projection, tangent};
-use crate::contact::state::ContactState;
-use crate::model::{BodyKind, Model};
-use crate::model::{Component, Mode};
+use crate::model::BodyKind;
+use crate::model::Component;
 use crate::plane::minus;
+use crate::{ContactState, Mode, Model};
 use nalgebra::{DMatrix, RowVector3};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet, HashMap};

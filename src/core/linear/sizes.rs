@@ -8,9 +8,9 @@
 //!   only accurate to a few times the loads: regardless of the residual, no digit of its contact forces is right.
 
 use crate::fem::pressure::Pressures;
-use crate::linear::source::LinearisationPoint;
 use crate::model::Component;
-use crate::model::{Body, BodyKind, Factor, Form, Model};
+use crate::model::{Body, BodyKind, Factor, Form};
+use crate::{LinearisationPoint, Model};
 
 /// Round-off of an internal force or length, in units of the machine precision times the sum of its terms' magnitudes.
 pub const ROUND_OFF: f64 = 8.0;

@@ -3,20 +3,15 @@
 //! The forces are total forces of the only increment. It is accepted once the natural map, relative to the forces, is at most
 //! [`SETTLED`] and no mode changes.
 
-use crate::contact::record::ContactRecord;
-use crate::contact::table2::{Rule, Test, TestedQuantity};
 use crate::interface::blocks::Blocks;
-use crate::interface::sweep::Sweep;
-use crate::linear::norms::Norms;
-use crate::model::{Friction, Mode, Model, SpaceProblem};
-use crate::step::event::{Event, Failure, Outcome};
+use crate::model::SpaceProblem;
 use crate::step::judged::{self, ReferenceSizes};
-use crate::step::solver::{
-    Capabilities, Now, ReportedForm, ReportedProblem, RewindSupport, Solver, SolverLost,
-};
-use crate::step::state::State;
-use crate::step::stored_states::StoredStates;
 use crate::strategy::gauss_seidel::SETTLED;
+use crate::{
+    Capabilities, ContactRecord, Event, Failure, Friction, Mode, Model, Norms, Now, Outcome,
+    ReportedForm, ReportedProblem, RewindSupport, Rule, Solver, SolverLost, State, StoredStates,
+    Sweep, Test, TestedQuantity,
+};
 use std::sync::Arc;
 
 /// Maximum number of sweeps.

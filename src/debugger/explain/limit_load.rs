@@ -17,12 +17,11 @@ use super::{names, strain};
 use std::collections::HashSet;
 use std::ops::ControlFlow;
 use std::sync::Arc;
-use stickslip_core::fem::deformation::PointDeformation;
-use stickslip_core::linear::singular::RigidMotion;
 use stickslip_core::model::Body;
 use stickslip_core::step::arc_state::Change;
 use stickslip_core::{
-    ContactRecord, Failure, Mode, Model, Outcome, RunEnd, Singular, State, Stepper, Until,
+    ContactRecord, Failure, Mode, Model, Outcome, PointDeformation, RigidMotion, RunEnd, Singular,
+    State, Stepper, Until,
 };
 use stickslip_scene::number::{sig4, sig6};
 use stickslip_scene::shown::first_of;

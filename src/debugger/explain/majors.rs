@@ -5,13 +5,11 @@ use super::attempt::{Attempt, Major};
 use super::cycles::place;
 use super::facts::{Fact, Part};
 use super::names::{mode, slave};
-use stickslip_core::contact::element::SurfaceElement;
-use stickslip_core::contact::projection::SurfacePoint;
 use stickslip_core::model::{Geometry, ResidualMethod};
 use stickslip_core::plane::{cross, dot};
-use stickslip_core::step::major_history::{MajorCycle, Stop};
+use stickslip_core::step::major_history::Stop;
 use stickslip_core::words::counted;
-use stickslip_core::{Mode, Model, Settings, State};
+use stickslip_core::{MajorCycle, Mode, Model, Settings, State, SurfaceElement, SurfacePoint};
 use stickslip_scene::number::{sig2, sig4};
 use stickslip_scene::shown::first_of;
 

@@ -5,9 +5,9 @@
 
 use super::super::areas::{AreaSide, density, sides};
 use super::super::nodes::Names;
+use crate::Spec;
 use crate::format::error::{Fault, at, bail};
-use crate::format::spec::Spec;
-use stickslip_core::contact::element::SurfaceElement;
+use stickslip_core::SurfaceElement;
 use stickslip_core::contact::projection::{closest_point, projection_at};
 use stickslip_core::fem::lagrange::gauss;
 use stickslip_core::model::{Body, BodyKind, Contact, Node, Surface};

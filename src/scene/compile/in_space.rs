@@ -1,9 +1,9 @@
 //! Interface problems in space: contacts side by side above a floor, in a square grid.
 
 use super::history;
+use crate::Spec;
 use crate::format::error::{Fault, at, bail};
 use crate::format::in_space::SpaceSpec;
-use crate::format::spec::Spec;
 use crate::limits;
 use crate::nodes::Names;
 use std::collections::HashSet;

@@ -11,7 +11,8 @@ use crate::format::spec::{Nodes, SlaveSpec, SurfaceSpec};
 use crate::geometry::distance_to_segment;
 use crate::number::sig4;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
-use stickslip_core::model::{InitialGaps, Mode, SlavePoints};
+use stickslip_core::Mode;
+use stickslip_core::model::{InitialGaps, SlavePoints};
 use stickslip_exchange::inp::DeckLocation;
 use stickslip_exchange::inp::deck::{Adjust, Faces, Family, Normal, Pair, Tie};
 

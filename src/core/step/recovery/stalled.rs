@@ -1,12 +1,8 @@
 //! The conditions that recoveries check on a failed increment.
 
 use super::fallback::{DEEPER, Fallback};
-use crate::contact::state::ContactState;
-use crate::linear::singular::Singular;
-use crate::linear::source::Source;
-use crate::model::{BodyKind, Factor, Jumps, Mode, Model, SearchMode};
-use crate::step::event::Failure;
-use crate::step::state::State;
+use crate::model::{BodyKind, Factor, Jumps, SearchMode};
+use crate::{ContactState, Failure, Mode, Model, Singular, Source, State};
 
 /// Minimum size of a half, as a fraction of the whole increment.
 const SMALLEST_HALF: f64 = 1e-9;

@@ -20,19 +20,18 @@ use crate::explain::names;
 use crate::history::verdicts;
 use std::ops::ControlFlow;
 use std::sync::Arc;
-use stickslip_core::interface::minor_history::Cycle;
-use stickslip_core::interface::problem::ProblemNode;
 use stickslip_core::model::{Bond, InitialState};
 use stickslip_core::strategy::method;
 use stickslip_core::{
-    ContactRecord, Failure, Forced, InterfaceProblem, Mode, Model, Outcome, Position, RunEnd,
-    Settings, Stepper, Trials, Until,
+    ContactRecord, Cycle, Failure, Forced, InterfaceProblem, Mode, Model, Outcome, Position,
+    ProblemNode, RunEnd, Settings, Stepper, Trials, Until,
 };
 use stickslip_linalg::DenseFactors;
 use stickslip_scene::format::condensed::{Contact, Matrix, Problem};
-use stickslip_scene::format::{SceneError, read};
+use stickslip_scene::format::read;
 use stickslip_scene::siconos::Friction2d;
-use stickslip_scene::{Scene, limits, shown};
+use stickslip_scene::{Scene, SceneError};
+use stickslip_scene::{limits, shown};
 
 /// If the inverse (relative to the springs) that yields one of the two matrices is larger than this, removing
 /// the springs loses too many digits.

@@ -4,10 +4,9 @@
 //! The guesses are simple. The contact is between the two lines of different bodies whose nodes are closest on
 //! average. The lowest horizontal line is fixed; the highest one moves down by a hundredth of the height.
 
-use stickslip_scene::Scene;
-use stickslip_scene::format::SceneError;
 use stickslip_scene::nodes::lines::Line;
 use stickslip_scene::shown;
+use stickslip_scene::{Scene, SceneError};
 
 /// Id of the mesh.
 const ID: &str = "m";

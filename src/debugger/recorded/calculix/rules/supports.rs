@@ -4,7 +4,7 @@ use super::shape::{DeckShape, PairShape, SlaveGap, Vector};
 use nalgebra::{SMatrix, SVector};
 use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
-use stickslip_core::model::RunFinding;
+use stickslip_core::RunFinding;
 use stickslip_exchange::inp::deck::{Direction, Normal, Step, Value, Volume};
 use stickslip_scene::number::sig4;
 
