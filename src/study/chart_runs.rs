@@ -17,6 +17,7 @@ use super::sweep_input::Input;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use stickslip_core::Model;
+use stickslip_core::plane::max_abs;
 use stickslip_platform::system;
 use stickslip_scene::{SceneError, increments};
 
@@ -215,7 +216,7 @@ fn table(chart: &Chart, path: &[f64]) -> Result<Option<Reference>, PrecisionErro
 }
 
 fn is_same(path: &[f64], a: f64, b: f64) -> bool {
-    let size = path.iter().fold(0.0, |m: f64, load| m.max(load.abs()));
+    let size = max_abs(path);
     (a - b).abs() <= SAME_LOAD * size
 }
 

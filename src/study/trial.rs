@@ -21,6 +21,7 @@ use std::convert::Infallible;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use stickslip_core::interface::census::census;
+use stickslip_core::plane::max_abs;
 use stickslip_core::{Model, RunEnd, Settings, Stepper, Until};
 use stickslip_scene::base::{Base, Method};
 use stickslip_scene::format::condensed::{Matrix, Problem};
@@ -245,7 +246,7 @@ fn violation(problem: &Problem, stepper: &Stepper) -> f64 {
 fn broken(problem: &Problem, u: &[f64], f: &[f64]) -> f64 {
     let free = |i: usize| problem.free.get(i).copied().unwrap_or(0.0);
     let acts = |i: usize| problem.contacts[i / 2].load[i % 2] + f[i];
-    let size = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, |m: f64, v| m.max(v.abs()));
+    let size = |values: &mut dyn Iterator<Item = f64>| max_abs(values);
     let all = || 0..u.len();
     let stiff = matches!(problem.matrix, Matrix::Stiffness(_));
     let of = |j: usize| if stiff { u[j] - free(j) } else { acts(j) };

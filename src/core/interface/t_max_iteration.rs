@@ -12,6 +12,7 @@
 //! this region forever.
 
 use crate::linalg::DenseFactors;
+use crate::plane::max_abs;
 use crate::{BoundUpdate, ContactState, InterfaceProblem, Method, Mode, Trials};
 
 /// Relative distance from the fixed point below which consecutive periods are equal.
@@ -174,7 +175,7 @@ fn of_round(
         modes: (0..first.len())
             .map(|s| round[..period].iter().map(|nodes| nodes[s].mode).collect())
             .collect(),
-        distance: away.iter().fold(0.0, |m, x| x.abs().max(m)),
+        distance: max_abs(&away),
         radius: radius(&map, size),
         fate: TMaxLimit::Diverges,
         places,

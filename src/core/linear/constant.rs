@@ -12,6 +12,7 @@
 use crate::linalg::SolveError;
 use crate::linear::violation::violation;
 use crate::model::{Bond, Contact, Dofs, Node, Touch};
+use crate::plane::max_abs;
 use crate::words::counted;
 use crate::{
     CondensedSystem, ContactState, Friction, LinearisationPoint, Mode, Model, NodeKinematics,
@@ -206,7 +207,7 @@ impl Source for ConstantSource {
         let missing = &mut relation.start;
         self.interface
             .missing(at.u, at.target, at.contacts, missing);
-        let force = missing.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
+        let force = max_abs(missing.iter());
         self.condensed.fresh = true;
         let scale = self.scale(at);
         self.norms = at.norms(force, scale);

@@ -10,6 +10,7 @@ use crate::interface::minor_history::Input;
 use crate::interface::rows;
 use crate::linalg::SolveError;
 use crate::model::{Axis, MonitorQuantity};
+use crate::plane::max_abs;
 use crate::{
     CondensedSystem, ContactState, Deformation, Finding, Friction, InterfaceProblem, JudgedLaw,
     JudgedNumbers, Mode, Model, NodeIncrement, NodeKinematics, Norms, NotFound, ProblemNode,
@@ -347,7 +348,7 @@ pub trait Source: Send {
         self.condensed().map_or(1.0, |condensed| {
             let diagonal = condensed.relation.response.iter();
             let diagonal = diagonal.step_by(2 * condensed.forces.len() + 1);
-            diagonal.fold(0.0, |most: f64, k| most.max(k.abs()))
+            max_abs(diagonal)
         })
     }
 
@@ -409,7 +410,7 @@ pub trait Source: Send {
 
     /// Largest displacement in a state; rotations are multiplied by the scene's length.
     fn largest_motion(&self, u: &[f64]) -> f64 {
-        u.iter().fold(0.0, |most: f64, u| most.max(u.abs()))
+        max_abs(u)
     }
 
     /// Largest displacement between two states (length).

@@ -20,6 +20,7 @@ use crate::linear::source::SUSPICIOUS;
 use crate::linear::sparse_contacts::sparse_contacts;
 use crate::linear::violation::violation;
 use crate::model::{Bond, Linear, MonitorQuantity};
+use crate::plane::max_abs;
 use crate::strategy::SETTLED;
 use crate::{
     ContactState, Equation, Friction, InterfaceProblem, InterfaceResponse, LinearisationPoint,
@@ -326,7 +327,7 @@ impl Source for SparseInterface {
         self.compliance.multiply(&self.load, &mut self.start);
         self.forces.copy_from_slice(&self.before);
         self.finish();
-        let largest = |values: &[f64]| values.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+        let largest = |values: &[f64]| max_abs(values);
         let loads = largest(&self.load).max(self.spring * largest(&self.free));
         let scale = loads.max(largest(&self.before)).max(f64::MIN_POSITIVE);
         let force = self.spring * largest(&self.moved);

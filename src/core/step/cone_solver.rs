@@ -217,6 +217,7 @@ impl Solver for ConeSolver {
 mod tests {
     use super::*;
     use crate::model::{Contact, Node, Surface};
+    use crate::plane::max_abs;
     use crate::step::Status;
 
     /// Contacts on a floor with the compliance W = diagonal + coupling, pushed down and along different directions.
@@ -300,7 +301,7 @@ mod tests {
             while solver.step().expect("it steps") {}
             assert_eq!(solver.state().status, Status::Finished);
             let expected = fixed_point(&solver.problem, mu);
-            let largest = expected.iter().fold(0.0, |most: f64, f| most.max(f.abs()));
+            let largest = max_abs(&expected);
             for (found, expected) in solver.sweep.forces().iter().zip(&expected) {
                 assert!(
                     (found - expected).abs() < 1e-7 * largest,

@@ -13,6 +13,7 @@ use crate::explain::conditions::{Given, conditions, supports};
 use crate::explain::names;
 use crate::explain::outline::{self, Bounds, Point, Projection, curve, extent};
 use stickslip_core::model::{BodyKind, SolidElement};
+use stickslip_core::plane::distance;
 use stickslip_core::words::counted;
 use stickslip_core::{ContactRecord, Mode, Model, Outcome, Status, Stepper, SurfaceElement};
 use stickslip_scene::number::{shortest, sig4};
@@ -299,7 +300,7 @@ impl ShapeDrawing<'_> {
             for SolidElement { kind, nodes, .. } in &solid.elements {
                 let across = kind.faces().len() / 2;
                 let (a, b) = ((self.now)(nodes[0]), (self.now)(nodes[across]));
-                if (a[0] - b[0]).hypot(a[1] - b[1]) * self.window.scale < ELEMENT {
+                if distance(a, b) * self.window.scale < ELEMENT {
                     continue;
                 }
                 for face in kind.faces_of(nodes) {
