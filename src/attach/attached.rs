@@ -9,13 +9,11 @@ use super::link::{Link, Start, name};
 use super::started_solver::{self, StartedSolver, meet};
 use std::sync::Arc;
 use std::sync::atomic::AtomicUsize;
-use stickslip_core::step::Status;
-use stickslip_core::step::intervene::Refusal;
+use stickslip_core::step::solver::Now;
 use stickslip_core::step::stored_states::StoredStates;
 use stickslip_core::words::counted;
 use stickslip_core::{
-    Capabilities, Event, Intervention, Mode, Model, Position, ReportedProblem, Solver, SolverLost,
-    State,
+    Capabilities, Intervention, Mode, Model, Position, ReportedProblem, Solver, SolverLost, State,
 };
 use stickslip_debugger::explain::names;
 use stickslip_debugger::recorded::decode::{self, RecordedStep, WireFrame};
@@ -411,23 +409,16 @@ impl Attached {
 }
 
 impl Solver for Attached {
-    fn model(&self) -> &Arc<Model> {
-        &self.model
+    fn now(&self) -> Now<'_> {
+        Now::new(&self.model, &self.now.state, &self.now.event)
     }
 
-    fn state(&self) -> &State {
-        &self.now.state
+    fn state_mut(&mut self) -> &mut State {
+        &mut self.now.state
     }
 
-    fn event(&self) -> &Event {
-        &self.now.event
-    }
-
-    fn step(&mut self) -> Result<bool, SolverLost> {
-        if self.now.state.status == Status::Finished {
-            return Ok(false);
-        }
-        self.iterate().map(|()| true).map_err(|fault| {
+    fn advance(&mut self) -> Result<(), SolverLost> {
+        self.iterate().map_err(|fault| {
             let lost = fault.to_string();
             self.log.noted(&lost);
             SolverLost::new(lost)
@@ -440,11 +431,6 @@ impl Solver for Attached {
             Ok(_) => Ok(()),
             Err(fault) => Err(SolverLost::new(fault.to_string())),
         }
-    }
-
-    fn intervene(&mut self, intervention: &Intervention) -> Result<(), Refusal> {
-        self.offers.check(intervention)?;
-        self.now.state.intervene(&self.model, intervention)
     }
 
     fn monitors(&mut self, out: &mut Vec<f64>) {

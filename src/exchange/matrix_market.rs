@@ -43,19 +43,23 @@ pub fn read(text: &str) -> Result<Matrix, FormatError> {
             "a matrix with {rows} rows and {columns} columns cannot be symmetric or skew-symmetric"
         );
     }
-    let entries = match coordinate {
-        true => coordinates(&mut words, rows, columns, symmetry)?,
-        false => array(&mut words, rows, columns, symmetry)?,
+    let mut read = MatrixReader {
+        matrix: Matrix {
+            rows,
+            columns,
+            entries: Vec::new(),
+        },
+        symmetry,
     };
+    match coordinate {
+        true => read.coordinates(&mut words)?,
+        false => read.array(&mut words)?,
+    }
     if let Some(more) = words.peek() {
         words.next(more)?;
         return Err(words.unlike(more, "the end of the file, after the last entry,"));
     }
-    Ok(Matrix {
-        rows,
-        columns,
-        entries,
-    })
+    Ok(read.matrix)
 }
 
 /// Whether entries have coordinates, and which of them are stored.
@@ -120,67 +124,60 @@ fn without_comments(text: &str) -> String {
     lines.collect()
 }
 
-type Entries = Vec<(usize, usize, f64)>;
-
-fn coordinates(
-    words: &mut Words<'_>,
-    rows: usize,
-    columns: usize,
+struct MatrixReader {
+    matrix: Matrix,
     symmetry: Symmetry,
-) -> Result<Entries, FormatError> {
-    let count = words.count("the number of entries")?;
-    let mut entries = Vec::new();
-    for _ in 0..count {
-        let mut index = |most: usize, what: &str| {
-            let at = words.count(what)?;
-            match (1..=most).contains(&at) {
-                true => Ok(at - 1),
-                false => Err(words.broken(format!("{what} is {at}; it must be 1 to {most}"))),
-            }
-        };
-        let (row, column) = (index(rows, "a row")?, index(columns, "a column")?);
-        if symmetry == Symmetry::Skew && row == column {
-            bail!(
-                words.place(),
-                "a skew-symmetric matrix has no diagonal entries"
-            );
-        }
-        let value = words.number("an entry")?;
-        add(&mut entries, row, column, value, symmetry);
-    }
-    Ok(entries)
 }
 
-fn array(
-    words: &mut Words<'_>,
-    rows: usize,
-    columns: usize,
-    symmetry: Symmetry,
-) -> Result<Entries, FormatError> {
-    let mut entries = Vec::new();
-    for column in 0..columns {
-        let first = match symmetry {
-            Symmetry::General => 0,
-            Symmetry::Symmetric => column,
-            Symmetry::Skew => column + 1,
-        };
-        for row in first..rows {
-            let value = words.number("an entry")?;
-            if is_there(value) {
-                add(&mut entries, row, column, value, symmetry);
+impl MatrixReader {
+    fn coordinates(&mut self, words: &mut Words<'_>) -> Result<(), FormatError> {
+        for _ in 0..words.count("the number of entries")? {
+            let mut index = |most: usize, what: &str| {
+                let at = words.count(what)?;
+                match (1..=most).contains(&at) {
+                    true => Ok(at - 1),
+                    false => Err(words.broken(format!("{what} is {at}; it must be 1 to {most}"))),
+                }
+            };
+            let row = index(self.matrix.rows, "a row")?;
+            let column = index(self.matrix.columns, "a column")?;
+            if self.symmetry == Symmetry::Skew && row == column {
+                bail!(
+                    words.place(),
+                    "a skew-symmetric matrix has no diagonal entries"
+                );
+            }
+            self.add(row, column, words.number("an entry")?);
+        }
+        Ok(())
+    }
+
+    fn array(&mut self, words: &mut Words<'_>) -> Result<(), FormatError> {
+        for column in 0..self.matrix.columns {
+            let first = match self.symmetry {
+                Symmetry::General => 0,
+                Symmetry::Symmetric => column,
+                Symmetry::Skew => column + 1,
+            };
+            for row in first..self.matrix.rows {
+                let value = words.number("an entry")?;
+                if is_there(value) {
+                    self.add(row, column, value);
+                }
             }
         }
+        Ok(())
     }
-    Ok(entries)
-}
 
-fn add(entries: &mut Entries, row: usize, column: usize, value: f64, symmetry: Symmetry) {
-    entries.push((row, column, value));
-    match symmetry {
-        Symmetry::General => {}
-        _ if row == column => {}
-        Symmetry::Symmetric => entries.push((column, row, value)),
-        Symmetry::Skew => entries.push((column, row, -value)),
+    fn add(&mut self, row: usize, column: usize, value: f64) {
+        let entries = &mut self.matrix.entries;
+        entries.push((row, column, value));
+        match self.symmetry {
+            Symmetry::General => {}
+            _ if row == column => {}
+            Symmetry::Symmetric => entries.push((column, row, value)),
+            Symmetry::Skew => entries.push((column, row, -value)),
+        }
     }
 }
 

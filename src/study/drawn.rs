@@ -27,26 +27,45 @@ pub enum Face {
     Mono(&'static [u8]),
 }
 
+/// A line of text.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TextLine {
+    /// Its point in pixels: to the right and downwards.
+    pub at: (f64, f64),
+    /// The text.
+    pub text: String,
+    /// Font size in pixels.
+    pub size: f64,
+    /// Its colour.
+    pub colour: Colour,
+    /// Position relative to its point.
+    pub anchor: Anchor,
+    /// Whether it is vertical, reading upwards.
+    pub upright: bool,
+    /// Its font.
+    pub face: Face,
+}
+
+impl TextLine {
+    /// A horizontal text to the right of a point.
+    pub fn new(at: (f64, f64), text: String, size: f64, colour: Colour) -> TextLine {
+        TextLine {
+            at,
+            text,
+            size,
+            colour,
+            anchor: Anchor::Left,
+            upright: false,
+            face: Face::Sans,
+        }
+    }
+}
+
 /// A shape.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Shape {
     /// A line of text.
-    Text {
-        /// Its point in pixels: to the right and downwards.
-        at: (f64, f64),
-        /// The text.
-        text: String,
-        /// Font size in pixels.
-        size: f64,
-        /// Its colour.
-        colour: Colour,
-        /// Position relative to its point.
-        anchor: Anchor,
-        /// Whether it is vertical, reading upwards.
-        upright: bool,
-        /// Its font.
-        face: Face,
-    },
+    Text(TextLine),
     /// A polyline.
     Line {
         /// Points in pixels: to the right and downwards.
@@ -69,7 +88,7 @@ impl Shape {
     /// Whether all its points are finite.
     pub fn is_finite(&self) -> bool {
         let points = match self {
-            Shape::Text { at, .. } => std::slice::from_ref(at),
+            Shape::Text(text) => std::slice::from_ref(&text.at),
             Shape::Line { points, .. } => points,
             Shape::Fill { corners, .. } => corners,
         };

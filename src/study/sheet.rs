@@ -3,7 +3,7 @@
 //!
 //! Lengths are in SVG units; x to the right, y downwards.
 
-use super::drawn::label;
+use super::drawn::{TextLine, label};
 use super::pen::{self, width_of};
 use super::placing::Patch;
 use stickslip_scene::shown;
@@ -146,28 +146,20 @@ impl Sheet {
     }
 
     fn put(&mut self, at: (f64, f64), text: String, (size, colour, anchor): (f64, Colour, Anchor)) {
-        self.shapes.push(Shape::Text {
-            at,
-            text: shown::line(&text).into_owned(),
-            size,
-            colour,
+        let text = shown::line(&text).into_owned();
+        self.shapes.push(Shape::Text(TextLine {
             anchor,
-            upright: false,
-            face: Face::Sans,
-        });
+            ..TextLine::new(at, text, size, colour)
+        }));
     }
 
     /// Adds a vertical text around a point, reading upwards.
     pub fn upright(&mut self, at: (f64, f64), text: &str, size: f64) {
-        self.shapes.push(Shape::Text {
-            at,
-            text: label(text),
-            size,
-            colour: BLACK,
+        self.shapes.push(Shape::Text(TextLine {
             anchor: Anchor::Middle,
             upright: true,
-            face: Face::Sans,
-        });
+            ..TextLine::new(at, label(text), size, BLACK)
+        }));
     }
 
     /// Adds a polyline.
@@ -326,9 +318,9 @@ impl Sheet {
         let point = |at: &mut (f64, f64)| *at = (factor * at.0, factor * at.1);
         for shape in &mut self.shapes {
             match shape {
-                Shape::Text { at, size, .. } => {
-                    point(at);
-                    *size *= factor;
+                Shape::Text(text) => {
+                    point(&mut text.at);
+                    text.size *= factor;
                 }
                 Shape::Line { points, width, .. } => {
                     points.iter_mut().for_each(point);

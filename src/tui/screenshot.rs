@@ -7,7 +7,7 @@ use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::Rect;
 use ratatui::style::{Color, Modifier};
 use stickslip_debugger::action::Colours;
-use stickslip_study::drawn::{Anchor, Colour, Face, PlotError, Shape};
+use stickslip_study::drawn::{Colour, Face, PlotError, Shape, TextLine};
 use stickslip_study::pen;
 
 /// Size of a cell in pixels; a letter of the font is as wide.
@@ -144,15 +144,11 @@ fn letter(shapes: &mut Vec<Shape>, (x, y): (f64, f64), cell: &Cell, palette: &Pa
     }
     let strokes = if has(Modifier::BOLD) { 2 } else { 1 };
     for stroke in 0..strokes {
-        shapes.push(Shape::Text {
-            at: (x + f64::from(stroke), y + MIDDLE),
-            text: cell.symbol().to_owned(),
-            size: SIZE,
-            colour,
-            anchor: Anchor::Left,
-            upright: false,
+        let at = (x + f64::from(stroke), y + MIDDLE);
+        shapes.push(Shape::Text(TextLine {
             face: Face::Mono(pen::mono()),
-        });
+            ..TextLine::new(at, cell.symbol().to_owned(), SIZE, colour)
+        }));
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::program::{code, err, out, program};
 use super::served::seen;
-use super::side::{PATIENT, Rude, does, is_harmless, minor};
+use super::side::{PATIENT, Rude, back, does, force, is_harmless, minor};
 use libtest_mimic::Trial;
 use std::time::{Duration, Instant};
 use stickslip::model::Mode;
@@ -506,15 +506,6 @@ fn a_solver_that_died_once_is_started_anew_and_comes_to_the_same() {
 }
 
 fn one_that_is_another_when_started_again_is_not_believed() {
-    let back = || Command::Back {
-        unit: Unit::Minor,
-        count: 3,
-    };
-    let force = || Command::Force {
-        slave: 0,
-        mode: Mode::Fixed,
-        hold: false,
-    };
     for (how, told) in [
         (
             "random",
@@ -531,8 +522,8 @@ fn one_that_is_another_when_started_again_is_not_believed() {
         for _ in 0..5 {
             does(&mut session, minor());
         }
-        does(&mut session, back());
-        does(&mut session, force());
+        does(&mut session, back(Unit::Minor, 3));
+        does(&mut session, force(Mode::Fixed, false));
         says(how, &does(&mut session, minor()), told);
         drop(session);
         rude.is_gone();
@@ -572,11 +563,7 @@ fn what_is_refused_is_told_and_the_solver_goes_on() {
             }
         }
         // The way without it is open.
-        let back = Command::Back {
-            unit: Unit::Minor,
-            count: 9,
-        };
-        does(&mut session, back);
+        does(&mut session, back(Unit::Minor, 9));
         assert_eq!(session.cursor(), 0);
         drop(session);
         rude.is_gone();
@@ -589,17 +576,8 @@ fn a_restore_that_is_refused_is_done_again_from_before() {
     for _ in 0..4 {
         does(&mut session, minor());
     }
-    let back = Command::Back {
-        unit: Unit::Minor,
-        count: 2,
-    };
-    does(&mut session, back);
-    let force = Command::Force {
-        slave: 0,
-        mode: Mode::Sliding,
-        hold: false,
-    };
-    does(&mut session, force);
+    does(&mut session, back(Unit::Minor, 2));
+    does(&mut session, force(Mode::Sliding, false));
     let said = does(&mut session, minor());
     assert!(said.contains("repeated 2 iterations"), "{said}");
     assert_eq!(

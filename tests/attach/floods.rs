@@ -1,11 +1,12 @@
 //! Solvers that say too much, or do not listen: memory and time stay bounded.
 
 use super::program::{err, out, program};
-use super::side::{PATIENT, Rude, does, is_harmless, minor};
+use super::side::{PATIENT, Rude, back, does, force, is_harmless, minor};
 use libtest_mimic::Trial;
 use std::process::{Command as Process, Stdio};
 use std::time::{Duration, Instant};
-use stickslip::record::command::{Command, Unit};
+use stickslip::model::Mode;
+use stickslip::record::command::Unit;
 
 pub fn tests() -> Vec<Trial> {
     crate::tests![
@@ -98,17 +99,8 @@ fn a_solver_that_does_not_read_its_input_does_not_hold_the_debugger() {
     let mut session = rude.attach().unwrap();
     does(&mut session, minor());
     does(&mut session, minor());
-    let back = Command::Back {
-        unit: Unit::Minor,
-        count: 2,
-    };
-    does(&mut session, back);
-    let force = Command::Force {
-        slave: 0,
-        mode: stickslip::model::Mode::Fixed,
-        hold: false,
-    };
-    does(&mut session, force);
+    does(&mut session, back(Unit::Minor, 2));
+    does(&mut session, force(Mode::Fixed, false));
     let said = does(&mut session, minor());
     assert!(
         said.contains("did not answer restore within 0.5 s"),

@@ -1,5 +1,6 @@
 //! Solvers that keep their loops: the clients that `stickslip attach --c`, `--fortran` and `--python` print, in the smallest solver.
 
+use super::common::examined;
 use super::program::program;
 use super::served::session;
 use super::side::{PATIENT, does, minor};
@@ -238,10 +239,7 @@ fn a_branch_of_a_forked_state_leaves_the_other_one_as_it_was() {
     };
     let period = [Mode::Free, Mode::Fixed];
     assert_eq!(modes(&session), [period, period].concat());
-    does(&mut session, Command::Census(Vec::new()));
-    session.background_mut().wait();
-    let page = session.background().examination(session.timeline().place());
-    let page = page.flatten().unwrap().lines().join("\n");
+    let page = examined(&mut session, Vec::new()).lines().join("\n");
     assert!(page.contains("cycle of period 2"), "{page}");
     // Another branch from the third iteration, and back to the end of the first one.
     does(&mut session, Command::Goto { step: 3 });

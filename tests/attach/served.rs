@@ -1,8 +1,8 @@
 //! Our own solver on the other side: what is seen of it is what is seen of the scene itself, to the last bit.
 
-use super::common::scene;
+use super::common::{examined, scene};
 use super::program::{code, err, out, program, well};
-use super::side::{PATIENT, does, own};
+use super::side::{PATIENT, back, does, force, forward, own};
 use libtest_mimic::Trial;
 use std::path::Path;
 use stickslip::attach::{Attached, Start};
@@ -178,22 +178,6 @@ pub fn session(start: Start, log: &Log) -> Session {
     let (scene, attached) =
         Attached::attach(start, log.clone()).unwrap_or_else(|fault| panic!("{fault}"));
     Session::attached(scene, Box::new(attached), log.clone())
-}
-
-fn forward(unit: Unit, count: u32) -> Command {
-    Command::Forward { unit, count }
-}
-
-fn back(unit: Unit, count: u32) -> Command {
-    Command::Back { unit, count }
-}
-
-fn force(mode: Mode, hold: bool) -> Command {
-    Command::Force {
-        slave: 0,
-        mode,
-        hold,
-    }
 }
 
 fn set(path: &str, value: &str) -> Command {
@@ -466,10 +450,7 @@ fn without_stretch(table: &str) -> String {
 fn page_of_failure(name: &str, how: &str) -> String {
     let mut session = session(start(name, "any", how), &Log::default());
     does(&mut session, forward(Unit::Run, 1));
-    does(&mut session, Command::Census(Vec::new()));
-    session.background_mut().wait();
-    let page = session.background().examination(session.timeline().place());
-    page.flatten().unwrap().lines().join("\n")
+    examined(&mut session, Vec::new()).lines().join("\n")
 }
 
 fn a_lagged_t_max_is_inferred_from_the_iterations_of_a_solver() {

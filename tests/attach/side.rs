@@ -4,6 +4,7 @@ use rustix::process::{Pid, test_kill_process};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 use stickslip::attach::{Attached, Start};
+use stickslip::model::Mode;
 use stickslip::record::command::{Command, Unit};
 use stickslip::recorded::{fault::Fault, log::Log};
 use stickslip::scene::shown;
@@ -91,10 +92,24 @@ fn is_there(pid: i32) -> bool {
     !zombie || ours
 }
 
+pub fn forward(unit: Unit, count: u32) -> Command {
+    Command::Forward { unit, count }
+}
+
 pub fn minor() -> Command {
-    Command::Forward {
-        unit: Unit::Minor,
-        count: 1,
+    forward(Unit::Minor, 1)
+}
+
+pub fn back(unit: Unit, count: u32) -> Command {
+    Command::Back { unit, count }
+}
+
+/// Forces the first contact.
+pub fn force(mode: Mode, hold: bool) -> Command {
+    Command::Force {
+        slave: 0,
+        mode,
+        hold,
     }
 }
 

@@ -1,5 +1,6 @@
 //! A solver in space, in Python where the system has it: its cycle, its states and its interface problem.
 
+use super::common::examined;
 use super::program::{code, err, out, program};
 use super::served::{seen, session};
 use super::side::{PATIENT, does, minor};
@@ -88,10 +89,7 @@ fn the_swing_of_the_direction_of_friction_is_found_and_is_the_cause() {
         "{said}"
     );
     does(&mut session, run());
-    does(&mut session, Command::Census(Vec::new()));
-    session.background_mut().wait();
-    let page = session.background().examination(session.timeline().place());
-    let page = page.flatten().unwrap().lines().join("\n");
+    let page = examined(&mut session, Vec::new()).lines().join("\n");
     assert!(page.contains("Why: cycle of period 2"), "{page}");
     // The state that the solver reaches with r = 1 in this increment.
     let head = "A consistent state of the interface problem was found (others may exist): 0 free, 2 sliding, 4 fixed.";
@@ -127,10 +125,7 @@ fn a_state_with_friction_across_its_slip_is_marked() {
             let angles = event.nodes.iter().filter_map(ContactRecord::deviation);
             let largest = angles.fold(0.0, f64::max).to_degrees();
             assert_eq!(largest > 60.0, marked, "{increment}: {largest}");
-            does(&mut session, Command::Census(Vec::new()));
-            session.background_mut().wait();
-            let page = session.background().examination(session.timeline().place());
-            let page = page.flatten().unwrap().lines().join("\n");
+            let page = examined(&mut session, Vec::new()).lines().join("\n");
             assert_eq!(page.contains("degrees off"), marked, "{page}");
             // Changes before an increment was accepted are over.
             assert!(!page.contains("changed in the last") || marked, "{page}");

@@ -217,17 +217,13 @@ fn scene(contacts: usize) -> Scene {
     nodes.push(end("left", -1.0));
     let contact = |k: usize| Contact {
         id: Id::Number(k as i64),
-        name: String::new(),
         node: k,
         surface: Some("floor".into()),
         friction: Friction {
             mu: Some(0.3),
             ..Friction::default()
         },
-        mode: Mode::Free,
-        area: None,
-        gives: None,
-        tied: false,
+        ..Contact::default()
     };
     Scene {
         title: format!("{contacts} contacts"),

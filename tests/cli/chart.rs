@@ -10,6 +10,13 @@ fn ran(directory: &Path, arguments: &[&str]) -> Output {
     program(directory, &chart).output().unwrap()
 }
 
+/// A chart's output and its table.
+fn charted(directory: &Path, line: &str) -> (Output, Vec<HashMap<String, String>>) {
+    let output = ran(directory, &words(line));
+    let table = rows(&output);
+    (output, table)
+}
+
 fn rows(output: &Output) -> Vec<HashMap<String, String>> {
     crate::program::rows(&well(output))
 }
@@ -30,9 +37,7 @@ fn the_elastica_is_the_reference_of_problem_04_and_the_cheapest_mesh_is_named() 
         "{CIRCLE} --over refine=1,2,4 --set history.increment=0.5 --target 2e-4 --cost minors --repeats 1 \
             --csv - --svg a.svg --png a.png"
     );
-    let arguments = words(&arguments);
-    let output = ran(directory.path(), &arguments);
-    let table = rows(&output);
+    let (output, table) = charted(directory.path(), &arguments);
     let errors: Vec<f64> = table.iter().map(|r| number(r, "error")).collect();
     // As in `tests/physics/references.rs`, but u_y, which is small, on its own scale.
     let limits = [1.1e-3, 4e-4, 1.1e-4];
@@ -74,12 +79,11 @@ fn the_elastica_is_the_reference_of_problem_04_and_the_cheapest_mesh_is_named() 
 #[test]
 fn without_a_table_the_finest_run_is_the_reference_and_says_so() {
     let directory = tempfile::tempdir().unwrap();
-    let arguments = words(
+    let (output, table) = charted(
+        directory.path(),
         "05-cantilever-elastic-block --over refine=1,2 --set history.path[1]=0.1 --set \
             history.increment=0.1 --repeats 1 --csv -",
     );
-    let output = ran(directory.path(), &arguments);
-    let table = rows(&output);
     assert_eq!(
         (table[0]["status"].as_str(), table[1]["status"].as_str()),
         ("whole", "reference")
@@ -101,9 +105,7 @@ fn a_run_that_fails_is_a_row_and_a_cross_on_the_rail() {
     let arguments = format!(
         "{BEAM} --set history.jumps=stop --over majors=60,1 --repeats 1 --csv - --svg a.svg"
     );
-    let arguments = words(&arguments);
-    let output = ran(directory.path(), &arguments);
-    let table = rows(&output);
+    let (_, table) = charted(directory.path(), &arguments);
     assert_eq!(table[0]["status"], "whole");
     assert!(number(&table[0], "error") < 1e-8, "{table:?}");
     // Of 0.01, the increment was cut six times, down to the least.
@@ -169,9 +171,7 @@ fn a_table_of_ones_own_is_a_reference_with_its_legs() {
     assert!(fine.status.success());
     let arguments =
         format!("{BEAM} --over increment=0.05,0.025 --reference own.csv --repeats 1 --csv -");
-    let arguments = words(&arguments);
-    let output = ran(directory.path(), &arguments);
-    let table = rows(&output);
+    let (output, table) = charted(directory.path(), &arguments);
     // The same run as its own reference, over both legs: on the way back each load has another displacement.
     assert_eq!(number(&table[0], "error"), 0.0);
     assert!(number(&table[1], "error") < 1e-6, "{table:?}");
@@ -190,9 +190,7 @@ fn the_middle_of_the_times_is_taken_and_the_counts_are_those_of_a_run() {
     std::fs::write(directory.path().join("end.csv"), own).unwrap();
     let arguments =
         format!("{CIRCLE} --over increment=0.5,1.75 --reference end.csv --repeats 3 --csv -");
-    let arguments = words(&arguments);
-    let output = ran(directory.path(), &arguments);
-    let table = rows(&output);
+    let (_, table) = charted(directory.path(), &arguments);
     for row in &table {
         assert_eq!(row["repeats"], "3");
         let [least, middle, most] = ["fastest", "seconds", "slowest"].map(|head| number(row, head));

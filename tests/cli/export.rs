@@ -1,15 +1,11 @@
 //! Files made of what is there: the kind by the extension, whole, with the same bytes every time.
 
-use crate::program::{code, err, names, out, program, well};
+use crate::program::{code, err, names, out, ran, well};
 use std::path::Path;
 use std::process::Output;
 
 const OSC: &str = "osc-inclined-cantilever";
 const ROUGH: &str = "02-two-cantilevers-rough";
-
-fn ran(directory: &Path, arguments: &[&str]) -> Output {
-    program(directory, arguments).output().unwrap()
-}
 
 fn exported(directory: &Path, arguments: &[&str]) -> Output {
     ran(directory, &[&["export"], arguments].concat())

@@ -1,14 +1,9 @@
 //! What the command line says where something else was meant, and with which code it ends.
 
-use crate::program::{code, err, out, program, read_first_line, well, words};
+use crate::program::{code, err, out, program, ran, read_first_line, well, words};
 use std::path::Path;
-use std::process::Output;
 
 const OSC: &str = "osc-inclined-cantilever";
-
-fn ran(directory: &Path, arguments: &[&str]) -> Output {
-    program(directory, arguments).output().unwrap()
-}
 
 fn top(file: &str) -> String {
     format!("{}/{file}", env!("CARGO_MANIFEST_DIR"))

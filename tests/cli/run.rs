@@ -20,12 +20,8 @@ const OSC: &str = "osc-inclined-cantilever";
 const LONG: [&str; 2] = ["--set", "history.increment=5e-6"];
 
 /// Runs in a directory of its own.
-fn ran_in(directory: &Path, arguments: &[&str]) -> Output {
-    program(directory, arguments).output().unwrap()
-}
-
 fn ran(arguments: &[&str]) -> Output {
-    ran_in(&std::env::current_dir().unwrap(), arguments)
+    crate::program::ran(&std::env::current_dir().unwrap(), arguments)
 }
 
 /// A table is whole if it ends with a line end and all its rows have as many fields as its header.
@@ -68,7 +64,7 @@ fn a_trace_has_a_row_for_every_minor_iteration_and_agrees_with_the_csv() {
     let directory = tempfile::tempdir().unwrap();
     let arguments = format!("run {BEAM} --csv a.csv --trace - -q");
     let arguments = words(&arguments);
-    let output = ran_in(directory.path(), &arguments);
+    let output = crate::program::ran(directory.path(), &arguments);
     assert_eq!(code(&output), 0, "{}", err(&output));
     let trace = out(&output);
     assert!(trace.starts_with(
@@ -190,13 +186,13 @@ fn bad_input_ends_with_2_and_one_line() {
         &["record", BEAM, "--at", "77"],
         &["record", BEAM, "--at", "1.2.500"],
     ] {
-        let output = ran_in(directory.path(), arguments);
+        let output = crate::program::ran(directory.path(), arguments);
         assert_eq!(code(&output), 2, "{arguments:?}: {}", err(&output));
         assert_eq!(out(&output), "", "{arguments:?}");
         assert_eq!(err(&output).lines().count(), 1, "{}", err(&output));
     }
     assert_eq!(names(directory.path()), ["bad.ron", "noise.ron"]);
-    let output = ran_in(directory.path(), &["check", "bad.ron"]);
+    let output = crate::program::ran(directory.path(), &["check", "bad.ron"]);
     assert!(err(&output).starts_with("bad.ron:2:"), "{}", err(&output));
 }
 
@@ -288,11 +284,11 @@ fn files_are_overwritten_only_when_asked_and_that_is_known_before_the_solve() {
         // This run would take minutes.
         let mut arguments = vec!["run", ROUGH, option, "precious"];
         arguments.extend(LONG);
-        let output = ran_in(directory.path(), &arguments);
+        let output = crate::program::ran(directory.path(), &arguments);
         assert_eq!(code(&output), 2, "{option}");
         assert!(err(&output).contains("--force"), "{}", err(&output));
         assert_eq!(std::fs::read_to_string(&file).unwrap(), "precious");
-        let output = ran_in(
+        let output = crate::program::ran(
             directory.path(),
             &["run", ROUGH, option, "precious", "--force"],
         );
@@ -304,7 +300,7 @@ fn files_are_overwritten_only_when_asked_and_that_is_known_before_the_solve() {
             "nothing is left over"
         );
     }
-    let same = ran_in(
+    let same = crate::program::ran(
         directory.path(),
         &words(&format!("run {ROUGH} --csv new --trace new")),
     );
@@ -319,7 +315,7 @@ fn a_failing_run_leaves_whole_files() {
         "run {OSC} --csv a.csv --trace a.trace --snapshot a.ron --set history.increment=0.02"
     );
     let arguments = words(&arguments);
-    let output = ran_in(directory.path(), &arguments);
+    let output = crate::program::ran(directory.path(), &arguments);
     assert_eq!(code(&output), 3);
     assert_eq!(names(directory.path()), ["a.csv", "a.ron", "a.trace"]);
     let read = |name: &str| std::fs::read_to_string(directory.path().join(name)).unwrap();
@@ -333,14 +329,14 @@ fn a_failing_run_leaves_whole_files() {
             .unwrap()
             .starts_with("3,1,1,2,beam.5,fixed,free,fixed-opens,")
     );
-    let replayed = ran_in(directory.path(), &["replay", "a.ron"]);
+    let replayed = crate::program::ran(directory.path(), &["replay", "a.ron"]);
     assert_eq!(code(&replayed), 0, "{}", out(&replayed));
 }
 
 #[test]
 fn what_is_recorded_replays_and_what_differs_is_told() {
     let directory = tempfile::tempdir().unwrap();
-    let ran = |arguments: &[&str]| ran_in(directory.path(), arguments);
+    let ran = |arguments: &[&str]| crate::program::ran(directory.path(), arguments);
     for (at, file) in [("3", "a.ron"), ("3.1", "b.ron"), ("26.1.1", "c.ron")] {
         let output = ran(&["record", BEAM, "--at", at, "-o", file]);
         assert_eq!(code(&output), 0, "{}", err(&output));
@@ -388,11 +384,11 @@ fn what_is_recorded_replays_and_what_differs_is_told() {
 #[test]
 fn record_names_its_file_and_tells_a_place_that_is_not_reached() {
     let directory = tempfile::tempdir().unwrap();
-    let output = ran_in(directory.path(), &["record", OSC, "--at", "1.1.2"]);
+    let output = crate::program::ran(directory.path(), &["record", OSC, "--at", "1.1.2"]);
     assert_eq!(code(&output), 0, "{}", err(&output));
     let file = "osc-inclined-cantilever-1.1.2.ron";
     assert_eq!(names(directory.path()), [file]);
-    let output = ran_in(directory.path(), &["record", OSC, "--at", "2"]);
+    let output = crate::program::ran(directory.path(), &["record", OSC, "--at", "2"]);
     assert_eq!(code(&output), 3);
     assert!(err(&output).contains("2 not reached"), "{}", err(&output));
     assert_eq!(names(directory.path()), [file]);

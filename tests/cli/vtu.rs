@@ -1,10 +1,8 @@
 //! `run --vtu` and `export -o FILE.vtu`: which files there are, what stands in them, and that none is lost.
 
-use crate::program::{code, err, names, out, program, rows, well, words};
+use crate::program::{code, err, names, out, ran, rows, well, words};
 use std::fs;
 use std::ops::ControlFlow;
-use std::path::Path;
-use std::process::Output;
 use std::sync::Arc;
 use stickslip::contact::record::ContactRecord;
 use stickslip::model::Mode;
@@ -21,10 +19,6 @@ use stickslip_exchange::vtu::{self, Array, Grid, Values};
 const BLOCK: &str = "osc-block-slide";
 const ROUGH: &str = "02-two-cantilevers-rough";
 const CYCLES: &str = "osc-two6";
-
-fn ran(directory: &Path, arguments: &[&str]) -> Output {
-    program(directory, arguments).output().unwrap()
-}
 
 /// Time and file of each entry of a collection.
 fn collection(text: &str) -> Vec<(f64, String)> {

@@ -3,8 +3,11 @@
 
 use std::collections::HashMap;
 use std::sync::Arc;
+use stickslip::explain::page::DiagnosisPage;
 use stickslip::model::Model;
+use stickslip::record::command::Command;
 use stickslip::scene::Scene;
+use stickslip::session::Session;
 use stickslip::step::event::{Event, Failure, Outcome};
 use stickslip::step::intervene::Intervention;
 use stickslip::step::state::State;
@@ -162,4 +165,13 @@ pub fn stepped(model: &Arc<Model>) -> (Vec<State>, Vec<Event>) {
         }
         states.push(stepper.state().clone());
     }
+}
+
+/// The page of a diagnosis at the cursor, with a census of the given nodes or of those that the cycle suggests.
+pub fn examined(session: &mut Session, nodes: Vec<usize>) -> DiagnosisPage {
+    session.submit(Command::Census(nodes)).unwrap();
+    session.wait();
+    session.background_mut().wait();
+    let page = session.background().examination(session.timeline().place());
+    page.flatten().expect("a page").clone()
 }

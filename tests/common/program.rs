@@ -24,6 +24,11 @@ pub fn program(directory: &Path, arguments: &[&str]) -> Command {
     command
 }
 
+/// The output of the program in a directory.
+pub fn ran(directory: &Path, arguments: &[&str]) -> Output {
+    program(directory, arguments).output().unwrap()
+}
+
 /// The words of a command line without quotes.
 pub fn words(line: &str) -> Vec<&str> {
     line.split_whitespace().collect()

@@ -19,9 +19,8 @@ use stickslip::record::command::{BranchTarget, Command, Unit};
 use stickslip::recorded::log::Log;
 use stickslip::session::Session;
 use stickslip::step::event::{Event, Failure, Outcome};
-use stickslip::step::intervene::{Intervention, Refusal};
-use stickslip::step::solver::{Capabilities, RewindSupport, SolverLost};
-use stickslip::step::{Solver, State, Status};
+use stickslip::step::solver::{Capabilities, Now, RewindSupport, SolverLost};
+use stickslip::step::{Solver, State};
 use stickslip_exchange::attach::message::{
     Contact, Friction, Id, NodeMessage, Scene, SurfaceMessage,
 };
@@ -85,22 +84,15 @@ impl Springs {
 }
 
 impl Solver for Springs {
-    fn model(&self) -> &Arc<Model> {
-        &self.model
+    fn now(&self) -> Now<'_> {
+        Now::new(&self.model, &self.state, &self.event)
     }
 
-    fn state(&self) -> &State {
-        &self.state
+    fn state_mut(&mut self) -> &mut State {
+        &mut self.state
     }
 
-    fn event(&self) -> &Event {
-        &self.event
-    }
-
-    fn step(&mut self) -> Result<bool, SolverLost> {
-        if self.state.status == Status::Finished {
-            return Ok(false);
-        }
+    fn advance(&mut self) -> Result<(), SolverLost> {
         let (nodes, start) = (&self.state.nodes, &self.state.start);
         let load = (start.load_factor + self.state.controls.increment).min(1.0);
         // n is upward: a node that touches has come down by its distance.
@@ -167,17 +159,7 @@ impl Solver for Springs {
         }
         self.state.u = Arc::new(u);
         self.state.follow(&self.event, 0);
-        Ok(true)
-    }
-
-    fn restore(&mut self, state: &State) -> Result<(), SolverLost> {
-        self.state.clone_from(state);
         Ok(())
-    }
-
-    fn intervene(&mut self, intervention: &Intervention) -> Result<(), Refusal> {
-        self.capabilities().check(intervention)?;
-        self.state.intervene(&self.model, intervention)
     }
 
     fn capabilities(&self) -> Capabilities {
@@ -207,17 +189,13 @@ fn told() -> Scene {
     nodes.push(node("floor.2".into(), [-1.0, 0.0]));
     let contact = |k: usize| Contact {
         id: Id::Number(k as i64),
-        name: String::new(),
         node: k,
         surface: Some("floor".into()),
         friction: Friction {
             mu: Some(MU),
             ..Friction::default()
         },
-        mode: Mode::Free,
-        area: None,
-        gives: None,
-        tied: false,
+        ..Contact::default()
     };
     Scene {
         title: "Nodes on springs over a rough floor".into(),

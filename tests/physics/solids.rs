@@ -2,6 +2,8 @@
 
 use crate::blocks::{block, finished, last};
 use crate::common::{Run, order, run};
+use stickslip::format::spec::LoadSpec;
+use stickslip::model::Component;
 use stickslip::scene::Scene;
 
 /// A clamped bar of length 10 with a shear force, that of its end face times `shear`.
@@ -157,31 +159,39 @@ fn a_distorted_patch_reproduces_a_homogeneous_deformation_exactly() {
             let at: Vec<[f64; 2]> = scene.model.nodes.iter().map(|n| n.at).collect();
             let mut spec = scene.spec.clone();
             let edges = ["bottom", "right", "top", "left"];
+            let f = f.map(|row| row.map(|f: f64| scale * f));
             for n in edges.iter().flat_map(|e| {
                 let nodes = scene.names().nodes(&format!("k.{e}")).unwrap();
                 nodes[1..].to_vec()
             }) {
-                use stickslip::format::spec::LoadSpec;
-                use stickslip::model::Component;
-                for (k, component) in [Component::X, Component::Y].into_iter().enumerate() {
-                    spec.loads.push(LoadSpec::Displacement {
-                        node: scene.model.nodes[n].name.clone(),
-                        component,
-                        value: scale * (f[k][0] * at[n][0] + f[k][1] * at[n][1]),
-                        scale: Vec::new(),
-                    });
+                for component in 0..2 {
+                    let name = scene.model.nodes[n].name.clone();
+                    spec.loads.push(moved(name, component, f, at[n]));
                 }
             }
             let run = finished(&Scene::from_spec("patch", spec).unwrap());
-            let state = run.stepper.state();
-            let first = &run.stepper.model().dofs.first;
-            for (n, x) in at.iter().enumerate() {
-                for (k, row) in f.iter().enumerate() {
-                    let expected = scale * (row[0] * x[0] + row[1] * x[1]);
-                    let error = state.u[first[n] + k] - expected;
-                    assert!(error.abs() < 1e-11 * scale, "{material} {scale}: {error:e}");
-                }
-            }
+            follows(&run, &at, f, 1e-11 * scale, material);
+        }
+    }
+}
+
+/// A prescribed displacement F x of a node.
+pub fn moved(node: String, component: usize, f: [[f64; 2]; 2], x: [f64; 2]) -> LoadSpec {
+    LoadSpec::Displacement {
+        node,
+        component: [Component::X, Component::Y][component],
+        value: f[component][0] * x[0] + f[component][1] * x[1],
+        scale: Vec::new(),
+    }
+}
+
+/// Fails unless all nodes have the displacements F x.
+pub fn follows(run: &Run, at: &[[f64; 2]], f: [[f64; 2]; 2], tolerance: f64, what: &str) {
+    let (u, first) = (&run.stepper.state().u, &run.stepper.model().dofs.first);
+    for (n, x) in at.iter().enumerate() {
+        for (k, row) in f.iter().enumerate() {
+            let error = u[first[n] + k] - (row[0] * x[0] + row[1] * x[1]);
+            assert!(error.abs() < tolerance, "{what}: {error:e}");
         }
     }
 }
@@ -291,60 +301,4 @@ fn a_block_that_is_pressed_through_itself_diverges_and_does_not_pretend() {
     assert!(cut.failure.is_some() && cut.accepted.iter().all(|a| a.load < 2.0 / 3.0));
     let run = run(&scene.with("history.least", "1").unwrap());
     assert!(run.failure.is_some() && run.accepted.is_empty());
-}
-
-#[test]
-#[ignore = "a measurement: cargo test --release --test physics solids -- --ignored --nocapture"]
-fn time_of_an_assembly_of_50000_unknowns() {
-    use std::time::Instant;
-    use stickslip::fem::assembly::{Assembly, AssemblyMotion};
-    use stickslip::fem::element::ElementOutput;
-    use stickslip::linalg::Pattern;
-    let started = Instant::now();
-    let scene = block(
-        "(0, 0), (1, 1)",
-        "(91, 91)",
-        "E: 100, nu: 0.3, law: neohookean",
-        "supports: [(node: \"k.bottom\", fix: [x, y])], history: (path: [0, 1], increment: 1)",
-    );
-    println!(
-        "scene {:?}, {} equations",
-        started.elapsed(),
-        scene.model.dofs.equations
-    );
-    let dofs = &scene.model.dofs;
-    let started = Instant::now();
-    let mut assembly = Assembly::new(&scene.model);
-    println!("elements {:?}", started.elapsed());
-    let started = Instant::now();
-    let entries = assembly.entries(dofs);
-    println!("entries {:?}", started.elapsed());
-    let started = Instant::now();
-    let pattern = Pattern::new(dofs.equations, entries);
-    println!("pattern {:?}", started.elapsed());
-    let started = Instant::now();
-    assembly.bind(dofs, &pattern, false);
-    println!("bind {:?}", started.elapsed());
-    let u: Vec<f64> = (0..dofs.len()).map(|d| 1e-5 * (d % 7) as f64).collect();
-    let (mut force, mut size) = (u.clone(), u.clone());
-    let mut values = vec![0.0; pattern.entries()];
-    let mut coupling = vec![0.0; dofs.equations];
-    for _ in 0..5 {
-        let started = Instant::now();
-        let moved = AssemblyMotion {
-            u: &u,
-            step: &u,
-            before: &u,
-            history: &[],
-        };
-        let out = ElementOutput {
-            force: &mut force,
-            size: &mut size,
-            values: &mut values,
-            coupling: &mut coupling,
-        };
-        assembly.assemble(dofs, moved, out);
-        println!("assemble {:?}", started.elapsed());
-    }
-    assert!(force.iter().all(|f| f.is_finite()));
 }

@@ -1,7 +1,7 @@
 //! Planted cycles: interface problems whose minor iterations are known beforehand, or are told by the iterations
 //! themselves; what finder, diagnosis and census say of them.
 
-use crate::common::run;
+use crate::common::{examined, run};
 use std::sync::Arc;
 use std::time::Instant;
 use stickslip::contact::record::ContactRecord;
@@ -14,7 +14,7 @@ use stickslip::interface::problem::{Answer, AssumedMode, InterfaceProblem};
 use stickslip::interface::trials::Trials;
 use stickslip::model::Mode;
 use stickslip::model::{Friction, InitialState, Settings, Strategy, Touch};
-use stickslip::record::command::Command;
+
 use stickslip::scene::Scene;
 use stickslip::session::Session;
 use stickslip::step::event::{Failure, Outcome};
@@ -466,13 +466,7 @@ fn a_cycle_among_hundreds_of_nodes_is_diagnosed_by_those_that_take_part() {
     assert_eq!(states, ["FFFFF"]);
     // The same in the debugger, from before the cycle, where nothing of it is known yet.
     let mut session = Session::new(scene);
-    session.submit(Command::Census(vec![])).unwrap();
-    session.background_mut().wait();
-    let finding = session
-        .background()
-        .examination(session.timeline().place())
-        .flatten()
-        .unwrap();
+    let finding = examined(&mut session, vec![]);
     assert!(finding.found.fails, "{:?}", finding.lines());
     assert!(
         finding.what.contains("c1, c2, c3, c4 and c5"),
@@ -480,13 +474,7 @@ fn a_cycle_among_hundreds_of_nodes_is_diagnosed_by_those_that_take_part() {
         finding.lines()
     );
     // And of chosen nodes, none of which is in the ring.
-    session.submit(Command::Census(vec![10, 11])).unwrap();
-    session.background_mut().wait();
-    let finding = session
-        .background()
-        .examination(session.timeline().place())
-        .flatten()
-        .unwrap();
+    let finding = examined(&mut session, vec![10, 11]);
     let census = finding.found.census.as_ref().unwrap();
     assert_eq!((census.tried, census.answers.len()), (4, 1));
     assert_eq!(census.answers[0].answer.letters(), "+F");

@@ -5,15 +5,14 @@
 use crate::terminal::*;
 use ratatui::layout::Rect;
 use serde_json::{Value as Json, json};
-use std::sync::Arc;
-use stickslip::model::Model;
 use stickslip::recorded::exchange::{self, RecordedSolver};
 use stickslip::recorded::recording::Recording;
 use stickslip::recorded::story::story;
 use stickslip::session::Session as Debugged;
-use stickslip::step::event::Event;
-use stickslip::step::intervene::{Intervention, Refusal, Value};
-use stickslip::step::solver::{Capabilities, Parameter, Range, RewindSupport, Solver, SolverLost};
+use stickslip::step::intervene::{Intervention, Value};
+use stickslip::step::solver::{
+    Capabilities, Now, Parameter, Range, RewindSupport, Solver, SolverLost,
+};
 use stickslip::step::state::State;
 use stickslip::tui::Debugger;
 use stickslip::tui::theme::Theme;
@@ -27,30 +26,18 @@ struct Toy {
 }
 
 impl Solver for Toy {
-    fn model(&self) -> &Arc<Model> {
-        self.past.model()
+    fn now(&self) -> Now<'_> {
+        self.past.now()
     }
 
-    fn state(&self) -> &State {
-        self.past.state()
+    fn state_mut(&mut self) -> &mut State {
+        self.past.state_mut()
     }
 
-    fn event(&self) -> &Event {
-        self.past.event()
-    }
-
-    fn step(&mut self) -> Result<bool, SolverLost> {
+    fn advance(&mut self) -> Result<(), SolverLost> {
         self.past
-            .step()
+            .advance()
             .map_err(|_| SolverLost::new("the solver ended: it fell off its chair"))
-    }
-
-    fn restore(&mut self, state: &State) -> Result<(), SolverLost> {
-        self.past.restore(state)
-    }
-
-    fn intervene(&mut self, intervention: &Intervention) -> Result<(), Refusal> {
-        self.past.intervene(intervention)
     }
 
     fn monitors(&mut self, out: &mut Vec<f64>) {

@@ -167,16 +167,12 @@ fn outcomes_have_a_glyph_and_a_sentence() {
         }),
         " ▸ minor iterations settled; residual 2e-5, limit 1e-11"
     );
-    let done = |unsettled| Outcome::Increment {
-        after,
-        unsettled,
-        marked: None,
-        jumped: false,
-        unstable: None,
-        motion: None,
-        found: None,
-        left_range: None,
-        last: false,
+    let done = |loops| {
+        let mut done = Outcome::accepted(after, false);
+        if let Outcome::Increment { unsettled, .. } = &mut done {
+            *unsettled = loops;
+        }
+        done
     };
     assert_eq!(say(done(0)), " ✓ load 0.3 accepted");
     assert_eq!(

@@ -211,14 +211,7 @@ impl Source for ConstantSource {
         let force = missing.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
         self.condensed.fresh = true;
         let scale = self.scale(at);
-        self.norms = Norms {
-            force,
-            relative: if force > 0.0 { force / scale } else { 0.0 },
-            correction: at.correction,
-            scale,
-            limit: at.chosen.tolerance,
-            ..Norms::default()
-        };
+        self.norms = at.norms(force, scale);
         Ok(())
     }
 

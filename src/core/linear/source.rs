@@ -70,6 +70,20 @@ pub struct LinearisationPoint<'a> {
     pub arc: f64,
 }
 
+impl LinearisationPoint<'_> {
+    /// Norms of the largest out-of-balance force and its scale, before the interface conditions.
+    pub fn norms(&self, force: f64, scale: f64) -> Norms {
+        Norms {
+            force,
+            relative: if force > 0.0 { force / scale } else { 0.0 },
+            correction: self.correction,
+            scale,
+            limit: self.chosen.tolerance,
+            ..Norms::default()
+        }
+    }
+}
+
 /// The additional equation if the load factor is an unknown.
 #[derive(Debug, Clone, Copy)]
 pub enum LoadEquation<'a> {

@@ -333,14 +333,8 @@ impl Source for SparseInterface {
         let loads = largest(&self.load).max(self.spring * largest(&self.free));
         let scale = loads.max(largest(&self.before)).max(f64::MIN_POSITIVE);
         let force = self.spring * largest(&self.moved);
-        self.norms = Norms {
-            force,
-            relative: force / scale,
-            correction: at.correction,
-            scale,
-            limit: at.chosen.tolerance.max(SETTLED),
-            ..Norms::default()
-        };
+        self.norms = at.norms(force, scale);
+        self.norms.limit = self.norms.limit.max(SETTLED);
         Ok(())
     }
 

@@ -10,12 +10,11 @@ use crate::interface::sweep::Sweep;
 use crate::linear::norms::Norms;
 use crate::model::{Friction, Mode, Model, SpaceProblem};
 use crate::step::event::{Event, Failure, Outcome};
-use crate::step::intervene::{Intervention, Refusal};
 use crate::step::judged::{self, ReferenceSizes};
 use crate::step::solver::{
-    Capabilities, ReportedForm, ReportedProblem, RewindSupport, Solver, SolverLost,
+    Capabilities, Now, ReportedForm, ReportedProblem, RewindSupport, Solver, SolverLost,
 };
-use crate::step::state::{State, Status};
+use crate::step::state::State;
 use crate::step::stored_states::StoredStates;
 use crate::strategy::gauss_seidel::SETTLED;
 use std::sync::Arc;
@@ -118,22 +117,15 @@ impl ConeSolver {
 }
 
 impl Solver for ConeSolver {
-    fn model(&self) -> &Arc<Model> {
-        &self.model
+    fn now(&self) -> Now<'_> {
+        Now::new(&self.model, &self.state, &self.event)
     }
 
-    fn state(&self) -> &State {
-        &self.state
+    fn state_mut(&mut self) -> &mut State {
+        &mut self.state
     }
 
-    fn event(&self) -> &Event {
-        &self.event
-    }
-
-    fn step(&mut self) -> Result<bool, SolverLost> {
-        if self.state.status == Status::Finished {
-            return Ok(false);
-        }
+    fn advance(&mut self) -> Result<(), SolverLost> {
         let place = self.go()?;
         let asked = self.state.changes().to_vec();
         let norms = |relative: f64| Norms {
@@ -188,17 +180,7 @@ impl Solver for ConeSolver {
         };
         self.state.follow(&self.event, next);
         self.at = Some(next);
-        Ok(true)
-    }
-
-    fn restore(&mut self, state: &State) -> Result<(), SolverLost> {
-        self.state.clone_from(state);
         Ok(())
-    }
-
-    fn intervene(&mut self, intervention: &Intervention) -> Result<(), Refusal> {
-        self.capabilities().check(intervention)?;
-        self.state.intervene(&self.model, intervention)
     }
 
     fn capabilities(&self) -> Capabilities {
@@ -240,6 +222,7 @@ impl Solver for ConeSolver {
 mod tests {
     use super::*;
     use crate::model::{Contact, Node, Surface};
+    use crate::step::Status;
 
     /// Contacts on a floor with the compliance W = diagonal + coupling, pushed down and along different directions.
     fn solver(count: usize, mu: f64) -> ConeSolver {

@@ -19,9 +19,9 @@
 //! use stickslip_core::contact::record::{ContactRecord, Forced};
 //! use stickslip_core::linear::norms::Norms;
 //! use stickslip_core::model::{Contact, Friction, InitialState, Mode, Model, Node, Surface};
-//! use stickslip_core::step::intervene::{Intervention, Refusal};
-//! use stickslip_core::step::solver::{RewindSupport, SolverLost, Capabilities};
-//! use stickslip_core::{Event, Outcome, Solver, State, Status};
+//! use stickslip_core::step::intervene::Intervention;
+//! use stickslip_core::step::solver::{Capabilities, Now, RewindSupport, SolverLost};
+//! use stickslip_core::{Event, Outcome, Solver, State};
 //!
 //! struct Pressed {
 //!     model: Arc<Model>,
@@ -30,19 +30,13 @@
 //! }
 //!
 //! impl Solver for Pressed {
-//!     fn model(&self) -> &Arc<Model> {
-//!         &self.model
+//!     fn now(&self) -> Now<'_> {
+//!         Now::new(&self.model, &self.state, &self.event)
 //!     }
-//!     fn state(&self) -> &State {
-//!         &self.state
+//!     fn state_mut(&mut self) -> &mut State {
+//!         &mut self.state
 //!     }
-//!     fn event(&self) -> &Event {
-//!         &self.event
-//!     }
-//!     fn step(&mut self) -> Result<bool, SolverLost> {
-//!         if self.state.status == Status::Finished {
-//!             return Ok(false);
-//!         }
+//!     fn advance(&mut self) -> Result<(), SolverLost> {
 //!         let (spring, distance) = (10.0, 0.1);
 //!         let load = self.state.start.load_factor + 0.5;
 //!         let (node, press) = (self.state.nodes[0], 4.0 * load);
@@ -68,15 +62,7 @@
 //!             ..Event::nothing_yet(&self.model)
 //!         };
 //!         self.state.follow(&self.event, 0);
-//!         Ok(true)
-//!     }
-//!     fn restore(&mut self, state: &State) -> Result<(), SolverLost> {
-//!         self.state.clone_from(state);
 //!         Ok(())
-//!     }
-//!     fn intervene(&mut self, intervention: &Intervention) -> Result<(), Refusal> {
-//!         self.capabilities().check(intervention)?;
-//!         self.state.intervene(&self.model, intervention)
 //!     }
 //!     fn capabilities(&self) -> Capabilities {
 //!         Capabilities { name: "pressed".into(), force: true, hold: true, goes_back: RewindSupport::ToAny, ..Capabilities::default() }
@@ -109,7 +95,7 @@
 use crate::model::{Friction, Model};
 use crate::step::event::Event;
 use crate::step::intervene::{Intervention, Refusal, Value};
-use crate::step::state::State;
+use crate::step::state::{State, Status};
 use crate::step::stepper::Stepper;
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
@@ -133,34 +119,86 @@ impl SolverLost {
     }
 }
 
+/// The scene of a solver, its current state, and the last minor iteration.
+#[derive(Debug, Clone, Copy)]
+pub struct Now<'a> {
+    /// The scene.
+    pub model: &'a Arc<Model>,
+    /// Current state.
+    pub state: &'a State,
+    /// Last minor iteration.
+    pub event: &'a Event,
+}
+
+impl<'a> Now<'a> {
+    /// From its parts.
+    pub fn new(model: &'a Arc<Model>, state: &'a State, event: &'a Event) -> Self {
+        Now {
+            model,
+            state,
+            event,
+        }
+    }
+}
+
 /// A solver that can be stepped.
 pub trait Solver: Send {
-    /// The scene.
-    fn model(&self) -> &Arc<Model>;
+    /// Where the solver is.
+    fn now(&self) -> Now<'_>;
 
-    /// Current state of the solver.
-    fn state(&self) -> &State;
+    /// Current state of the solver, to which [`Solver::restore`] and [`Solver::intervene`] apply their changes.
+    fn state_mut(&mut self) -> &mut State;
 
-    /// The last minor iteration.
-    fn event(&self) -> &Event;
-
-    /// Does one minor iteration and updates event and state; `false` if the history is finished and nothing was solved.
+    /// Does one minor iteration of a history that is not finished, and updates event and state.
     ///
     /// # Errors
     /// [`SolverLost`] if it cannot continue; state and event are unchanged.
-    fn step(&mut self) -> Result<bool, SolverLost>;
+    fn advance(&mut self) -> Result<(), SolverLost>;
+
+    /// Does one minor iteration; `false` if the history is finished and nothing was solved.
+    ///
+    /// # Errors
+    /// [`SolverLost`] if it cannot continue.
+    fn step(&mut self) -> Result<bool, SolverLost> {
+        match self.state().status {
+            Status::Finished => Ok(false),
+            _ => self.advance().map(|()| true),
+        }
+    }
 
     /// Returns to an earlier state, with the changes made there.
     ///
     /// # Errors
     /// [`SolverLost`] if it cannot return to that state.
-    fn restore(&mut self, state: &State) -> Result<(), SolverLost>;
+    fn restore(&mut self, state: &State) -> Result<(), SolverLost> {
+        self.state_mut().clone_from(state);
+        Ok(())
+    }
 
     /// Applies a change made by the user.
     ///
     /// # Errors
     /// If the change is invalid or not offered.
-    fn intervene(&mut self, intervention: &Intervention) -> Result<(), Refusal>;
+    fn intervene(&mut self, intervention: &Intervention) -> Result<(), Refusal> {
+        self.capabilities().check(intervention)?;
+        let model = self.model().clone();
+        self.state_mut().intervene(&model, intervention)
+    }
+
+    /// The scene.
+    fn model(&self) -> &Arc<Model> {
+        self.now().model
+    }
+
+    /// Current state of the solver.
+    fn state(&self) -> &State {
+        self.now().state
+    }
+
+    /// The last minor iteration.
+    fn event(&self) -> &Event {
+        self.now().event
+    }
 
     /// Appends the values of the scene's monitors at the end of an increment that was just accepted to `out`; nothing if the
     /// scene has none.
@@ -493,20 +531,17 @@ pub enum ReportedForm {
 }
 
 impl Solver for Stepper {
-    fn model(&self) -> &Arc<Model> {
-        Stepper::model(self)
+    fn now(&self) -> Now<'_> {
+        Now::new(&self.now.model, &self.now.state, &self.event)
     }
 
-    fn state(&self) -> &State {
-        Stepper::state(self)
+    fn state_mut(&mut self) -> &mut State {
+        &mut self.now.state
     }
 
-    fn event(&self) -> &Event {
-        Stepper::event(self)
-    }
-
-    fn step(&mut self) -> Result<bool, SolverLost> {
-        Ok(Stepper::step(self).is_some())
+    fn advance(&mut self) -> Result<(), SolverLost> {
+        Stepper::step(self);
+        Ok(())
     }
 
     fn restore(&mut self, state: &State) -> Result<(), SolverLost> {

@@ -204,7 +204,12 @@ impl DiagnosisPage {
             ..Examination::default()
         };
         DiagnosisPage {
-            tries: run.findings.iter().map(TryLine::from_finding).collect(),
+            tries: run
+                .findings
+                .iter()
+                .filter(|f| !f.cure.is_empty())
+                .map(TryLine::from_finding)
+                .collect(),
             ..DiagnosisPage::with_facts(what, facts.collect(), found)
         }
     }

@@ -13,8 +13,8 @@ use std::sync::Arc;
 use stickslip_core::model::Model;
 use stickslip_core::step::event::Event;
 use stickslip_core::step::intervene::{Intervention, Refusal};
-use stickslip_core::step::solver::{Capabilities, RewindSupport, Solver, SolverLost};
-use stickslip_core::step::state::{State, Status};
+use stickslip_core::step::solver::{Capabilities, Now, RewindSupport, Solver, SolverLost};
+use stickslip_core::step::state::State;
 use stickslip_core::step::stored_states::StoredStates;
 use stickslip_exchange::attach::conversation::STARTED;
 use stickslip_exchange::attach::message::{self, ContactResult, Hello, Id};
@@ -282,31 +282,19 @@ impl RecordedSolver {
 }
 
 impl Solver for RecordedSolver {
-    fn model(&self) -> &Arc<Model> {
-        &self.model
+    fn now(&self) -> Now<'_> {
+        Now::new(&self.model, &self.now.state, &self.now.event)
     }
 
-    fn state(&self) -> &State {
-        &self.now.state
+    fn state_mut(&mut self) -> &mut State {
+        &mut self.now.state
     }
 
-    fn event(&self) -> &Event {
-        &self.now.event
-    }
-
-    fn step(&mut self) -> Result<bool, SolverLost> {
-        if self.now.state.status == Status::Finished {
-            return Ok(false);
-        }
+    fn advance(&mut self) -> Result<(), SolverLost> {
         let Some(led) = self.next().cloned() else {
             return Err(SolverLost::new(Fault::Past.to_string()));
         };
         self.now = led;
-        Ok(true)
-    }
-
-    fn restore(&mut self, state: &State) -> Result<(), SolverLost> {
-        self.now.state.clone_from(state);
         Ok(())
     }
 

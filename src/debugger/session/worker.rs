@@ -319,21 +319,29 @@ fn run(
     };
     let interrupted = matches!(end, RunEnd::Interrupted);
     let round = round.map(|round| rounds::words(solver.model(), &round, false));
-    let parts: Vec<String> = solver.take_notice().into_iter().chain(round).collect();
-    let remark = (!parts.is_empty()).then(|| parts.join("; "));
-    send_last(
-        news,
-        Message::Done {
-            interrupted,
-            hits,
-            remark,
-        },
-    )
+    send_done(solver, news, interrupted, hits, round)
 }
 
 /// Sends what ends a command; `None` if the receiver is gone.
 fn send_last<T>(news: &SyncSender<Message>, message: Message) -> Option<Option<T>> {
     news.send(message).ok().map(|()| None)
+}
+
+/// Sends the end of the steps with the solver's notice and `more`.
+fn send_done<T>(
+    solver: &mut dyn Solver,
+    news: &SyncSender<Message>,
+    interrupted: bool,
+    hits: Vec<u32>,
+    more: Option<String>,
+) -> Option<Option<T>> {
+    let parts: Vec<String> = solver.take_notice().into_iter().chain(more).collect();
+    let done = Message::Done {
+        interrupted,
+        hits,
+        remark: (!parts.is_empty()).then(|| parts.join("; ")),
+    };
+    send_last(news, done)
 }
 
 /// The last minor iteration, started at `began`, as a frame and its strip.
@@ -390,15 +398,7 @@ fn follow(
             return Some(Some(steps.collect()));
         }
     }
-    let (hits, remark) = (Vec::new(), solver.take_notice());
-    send_last(
-        news,
-        Message::Done {
-            interrupted,
-            hits,
-            remark,
-        },
-    )
+    send_done(solver, news, interrupted, Vec::new(), None)
 }
 
 /// A step taken for the first time.

@@ -120,6 +120,12 @@ pub enum Id {
     Text(String),
 }
 
+impl Default for Id {
+    fn default() -> Id {
+        Id::Number(0)
+    }
+}
+
 impl std::fmt::Display for Id {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
@@ -271,7 +277,7 @@ pub struct Scene {
     #[serde(default)]
     pub about: String,
     /// Number of coordinates: 2 or 3.
-    #[serde(default = "plane", skip_serializing_if = "is_plane")]
+    #[serde(default = "count::<2>", skip_serializing_if = "is_count::<2>")]
     pub dimension: usize,
     /// File with the mesh, whose nodes precede `nodes`; only in the message of a running solver.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -304,12 +310,12 @@ pub struct Scene {
     pub drag: bool,
 }
 
-fn plane() -> usize {
-    2
+fn count<const N: usize>() -> usize {
+    N
 }
 
-fn is_plane(dimension: &usize) -> bool {
-    *dimension == plane()
+fn is_count<const N: usize>(count: &usize) -> bool {
+    *count == N
 }
 
 /// A node in the reference configuration.
@@ -358,7 +364,7 @@ pub struct SurfaceMessage {
 }
 
 /// A slave node.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Contact {
     /// Identifier used in requests.
     pub id: Id,
@@ -630,7 +636,7 @@ pub struct ProblemMessage {
     /// The participating contacts, in the order of the rows.
     pub contacts: Vec<Id>,
     /// Number of tangential components: 1 or 2.
-    #[serde(default = "one", skip_serializing_if = "is_one")]
+    #[serde(default = "count::<1>", skip_serializing_if = "is_count::<1>")]
     pub tangents: usize,
     /// Kind of matrix.
     pub kind: ReportedForm,
@@ -647,14 +653,6 @@ pub struct ProblemMessage {
     /// Cohesion of each contact (force); 0 if omitted.
     #[serde(default)]
     pub cohesion: Vec<f64>,
-}
-
-fn one() -> usize {
-    1
-}
-
-fn is_one(tangents: &usize) -> bool {
-    *tangents == one()
 }
 
 /// A matrix, by rows or by entries.

@@ -68,26 +68,18 @@ impl Bitmap {
                 let points: Vec<_> = points.iter().map(scaled).collect();
                 self.cover(&stroke(&points, width * pixels), *colour);
             }
-            Shape::Text {
-                at,
-                text,
-                size,
-                colour,
-                anchor,
-                upright,
-                face,
-            } => {
-                let font = font::font(*face, text)?;
-                let scale = font::scale(font, size * pixels);
-                let (glyphs, width) = font::glyphs(font, scale, text);
-                let left = match anchor {
+            Shape::Text(line) => {
+                let font = font::font(line.face, &line.text)?;
+                let scale = font::scale(font, line.size * pixels);
+                let (glyphs, width) = font::glyphs(font, scale, &line.text);
+                let left = match line.anchor {
                     Anchor::Left => 0.0,
                     Anchor::Middle => -0.5 * width,
                     Anchor::Right => -width,
                 };
                 // Text is centred on its letters without descenders.
-                let base = (0.36 * EM * size * pixels) as f32;
-                let (x, y) = scaled(at);
+                let base = (0.36 * EM * line.size * pixels) as f32;
+                let (x, y) = scaled(&line.at);
                 let (column, row) = (x.round() as i64, y.round() as i64);
                 for (glyph, x) in glyphs {
                     let glyph = glyph.with_scale_and_position(scale, point(left + x, base));
@@ -100,8 +92,8 @@ impl Bitmap {
                             corner.x as i64 + i64::from(x),
                             corner.y as i64 + i64::from(y),
                         );
-                        let (x, y) = if *upright { (y, -x) } else { (x, y) };
-                        self.mix((column + x, row + y), *colour, part);
+                        let (x, y) = if line.upright { (y, -x) } else { (x, y) };
+                        self.mix((column + x, row + y), line.colour, part);
                     });
                 }
             }
@@ -216,7 +208,7 @@ fn clipped(corners: &[(f64, f64)], (width, height): (f64, f64)) -> Vec<(f64, f64
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::drawn::Face;
+    use crate::drawn::TextLine;
 
     /// The runs of columns that contain ink.
     fn strokes(bitmap: &Bitmap) -> Vec<(usize, usize)> {
@@ -245,15 +237,8 @@ mod tests {
 
     #[test]
     fn equal_letters_have_equal_spacing() {
-        let shape = Shape::Text {
-            at: (5.0, 15.0),
-            text: "lilililililil".to_owned(),
-            size: 13.0,
-            colour: (0, 0, 0),
-            anchor: Anchor::Left,
-            upright: false,
-            face: Face::Sans,
-        };
+        let text = "lilililililil".to_owned();
+        let shape = Shape::Text(TextLine::new((5.0, 15.0), text, 13.0, (0, 0, 0)));
         let runs = strokes(&drawn((400, 60), &shape));
         assert_eq!(runs.len(), 13);
         let steps: Vec<usize> = runs.windows(2).map(|pair| pair[1].0 - pair[0].0).collect();

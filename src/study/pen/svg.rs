@@ -17,30 +17,23 @@ pub fn svg(shapes: &[Shape], (width, height): (f64, f64)) -> Result<String, Plot
     for shape in shapes.iter().filter(|shape| shape.is_finite()) {
         // Writing to a string does not fail.
         let _ = match shape {
-            Shape::Text {
-                at,
-                text: words,
-                size,
-                colour,
-                anchor,
-                upright,
-                face,
-            } => {
-                let (x, y) = (short(at.0), short(at.1));
-                let anchor = match anchor {
+            Shape::Text(line) => {
+                let (x, y) = (short(line.at.0), short(line.at.1));
+                let anchor = match line.anchor {
                     Anchor::Left => "start",
                     Anchor::Middle => "middle",
                     Anchor::Right => "end",
                 };
-                let turned = match upright {
+                let turned = match line.upright {
                     true => format!(" transform=\"rotate(270, {x}, {y})\""),
                     false => String::new(),
                 };
-                let family = match face {
+                let family = match line.face {
                     Face::Sans => "sans-serif",
                     Face::Mono(_) => "monospace",
                 };
-                let (size, colour, words) = (short(size * EM), hex(*colour), escaped(words));
+                let (size, colour) = (short(line.size * EM), hex(line.colour));
+                let words = escaped(&line.text);
                 writeln!(
                     text,
                     "<text x=\"{x}\" y=\"{y}\" dy=\"0.5ex\" text-anchor=\"{anchor}\" font-family=\"{family}\" \

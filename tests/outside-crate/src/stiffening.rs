@@ -92,14 +92,7 @@ impl Source for Stiffening {
             .chain(forces);
         let scale = sizes.fold(0.0, |most: f64, size| most.max(size.abs()));
         self.condensed.fresh = true;
-        self.norms = Norms {
-            force,
-            relative: if force > 0.0 { force / scale } else { 0.0 },
-            correction: at.correction,
-            scale,
-            limit: at.chosen.tolerance,
-            ..Norms::default()
-        };
+        self.norms = at.norms(force, scale);
         Ok(())
     }
 

@@ -1,7 +1,7 @@
 //! Writes a frozen interface problem as a condensed scene ([`stickslip_scene::format::condensed`]) that has the
 //! same minor iterations.
 //!
-//! With springs of stiffness k the problem's relation is `ΔF = start + R (v − ΔF / k)` ([`InterfaceResponse`]);
+//! With springs of stiffness k the problem's relation is `ΔF = start + R (v − ΔF / k)` ([`stickslip_core::interface::response`]);
 //! S* moves by v + p relative to S, where p is prescribed. In the scene the slave node moves by u = −(v + p)
 //! over a floor at rest, under F = F₀ + ΔF. Without the springs,
 //!
@@ -22,7 +22,6 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 use stickslip_core::interface::minor_history::Cycle;
 use stickslip_core::interface::problem::ProblemNode;
-use stickslip_core::interface::response::InterfaceResponse;
 use stickslip_core::model::{Bond, InitialState};
 use stickslip_core::strategy::method;
 use stickslip_core::{
@@ -440,15 +439,14 @@ type Parts = (Matrix, Vec<f64>, Vec<[f64; 2]>);
 
 /// K, free displacements and loads; `None` if something is rigid.
 fn stiffness(problem: &InterfaceProblem) -> Option<Parts> {
-    let InterfaceResponse {
-        stiffness: k,
-        start,
-        response,
-    } = &problem.relation;
-    let n = start.len();
-    let mut matrix: Vec<f64> = response.iter().map(|r| r / k).collect();
+    let relation = &problem.relation;
+    let (k, start, n) = (relation.stiffness, &relation.start, relation.start.len());
+    let mut matrix: Vec<f64> = relation.response.iter().map(|r| r / k).collect();
     (0..n).for_each(|i| matrix[i * n + i] += 1.0);
-    let solved = solved(&matrix, start.iter().chain(response).copied().collect())?;
+    let solved = solved(
+        &matrix,
+        start.iter().chain(&relation.response).copied().collect(),
+    )?;
     let (c, k_columns) = solved.split_at(n);
     // (1 + R/k)⁻¹ = 1 + K/k; without springs nothing has to be removed.
     let largest = k_columns.iter().fold(0.0_f64, |m, x| m.max(x.abs())) / k;
@@ -476,15 +474,11 @@ fn stiffness(problem: &InterfaceProblem) -> Option<Parts> {
 
 /// W and free displacements, without loads; `None` if something can move freely.
 fn compliance(problem: &InterfaceProblem) -> Option<Parts> {
-    let InterfaceResponse {
-        stiffness: k,
-        start,
-        response,
-    } = &problem.relation;
-    let n = start.len();
+    let relation = &problem.relation;
+    let (k, start, n) = (relation.stiffness, &relation.start, relation.start.len());
     let mut right = start.clone();
     right.extend((0..n * n).map(|at| if at / n == at % n { 1.0 } else { 0.0 }));
-    let solved = solved(response, right)?;
+    let solved = solved(&relation.response, right)?;
     let (still, inverse) = solved.split_at(n);
     let largest = inverse.iter().fold(0.0_f64, |m, x| m.max(x.abs())) * problem.spring;
     if largest > SINGULAR {

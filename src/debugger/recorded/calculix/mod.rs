@@ -21,9 +21,9 @@ use stickslip_core::linear::norms::Norms;
 use stickslip_core::model::{FinishedRun, Mode, Model};
 use stickslip_core::step::event::{Event, Failure, Outcome, Position, Words};
 use stickslip_core::step::intervene::{Intervention, Refusal};
-use stickslip_core::step::solver::{Capabilities, RewindSupport, Solver, SolverLost};
-use stickslip_core::step::state::{State, Status};
-use stickslip_exchange::attach::message::{self, Friction, Id, Level};
+use stickslip_core::step::solver::{Capabilities, Now, RewindSupport, Solver, SolverLost};
+use stickslip_core::step::state::State;
+use stickslip_exchange::attach::message::{self, Id, Level};
 use stickslip_exchange::calculix::cel::Slave;
 use stickslip_exchange::calculix::files::End;
 use stickslip_exchange::inp::Deck;
@@ -67,12 +67,7 @@ pub fn open(run: CalculixRun, deck: Option<Deck>) -> Result<OpenedRun, String> {
         id: Id::Number(slave as i64),
         name: run.slave(slave),
         node: slave,
-        surface: None,
-        friction: Friction::default(),
-        mode: message::Mode::Free,
-        area: None,
-        gives: None,
-        tied: false,
+        ..message::Contact::default()
     };
     let node = |slave: usize| message::NodeMessage {
         name: run.slave(slave),
@@ -289,34 +284,22 @@ impl RecordedRun {
 }
 
 impl Solver for RecordedRun {
-    fn model(&self) -> &Arc<Model> {
-        &self.model
+    fn now(&self) -> Now<'_> {
+        Now::new(&self.model, &self.state, &self.event)
     }
 
-    fn state(&self) -> &State {
-        &self.state
+    fn state_mut(&mut self) -> &mut State {
+        &mut self.state
     }
 
-    fn event(&self) -> &Event {
-        &self.event
-    }
-
-    fn step(&mut self) -> Result<bool, SolverLost> {
+    fn advance(&mut self) -> Result<(), SolverLost> {
         let iteration = self.state.place().unwrap_or(0) as usize;
-        if self.state.status == Status::Finished {
-            return Ok(false);
-        }
         if iteration >= self.run.files.iterations.len() {
             let text = format!("this is the last iteration of a {}", words::READ_ONLY);
             return Err(SolverLost::new(text));
         }
         self.event = self.event_of(iteration);
         self.state.follow(&self.event, iteration as u64 + 1);
-        Ok(true)
-    }
-
-    fn restore(&mut self, state: &State) -> Result<(), SolverLost> {
-        self.state.clone_from(state);
         Ok(())
     }
 
