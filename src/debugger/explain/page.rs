@@ -219,7 +219,8 @@ impl DiagnosisPage {
         let (mut why, mut rest): (Vec<Fact>, Vec<Fact>) =
             facts.into_iter().partition(|fact| fact.part == Part::Why);
         let more = why.split_off(why.len().min(MOST_WHY)).into_iter();
-        rest.extend(more.map(|fact| Fact::new(Part::Details, fact.text)));
+        let more = more.map(|fact| Fact::new(Part::Details, fact.text));
+        rest.splice(0..0, more);
         // Several motions of a body have the same contacts.
         let mut seen: Vec<String> = why.iter().map(|fact| fact.text.clone()).collect();
         rest.retain(|fact| {
