@@ -135,13 +135,8 @@ impl Chart {
             },
         };
         chart.title.clone_from(&scene.spec.title);
-        if !over.is_empty() {
-            let paths: Vec<&str> = over.iter().map(|vary| vary.path.as_str()).collect();
-            chart.series = vec![Series {
-                name: paths.join(", "),
-                vary: over.to_vec(),
-                set: Vec::new(),
-            }];
+        if let [along, others @ ..] = over {
+            chart.series = series(along, others);
             chart.set.clear();
             chart.truth = truth(&scene.name);
         }
@@ -168,6 +163,32 @@ impl Chart {
             series: file.series,
         })
     }
+}
+
+/// Runs along the values of a setting: one series for each combination of the others.
+fn series(along: &Vary, others: &[Vary]) -> Vec<Series> {
+    let mut sets: Vec<Vec<(String, String)>> = vec![Vec::new()];
+    for other in others {
+        let extended = sets.iter().flat_map(|set| {
+            let pair = |value: &String| (other.path.clone(), value.clone());
+            let values = other.values.iter().map(pair);
+            values.map(|pair| [&set[..], &[pair]].concat())
+        });
+        sets = extended.collect();
+    }
+    let name = |set: &[(String, String)]| match set {
+        [] => along.path.clone(),
+        set => {
+            let words = set.iter().map(|(path, value)| format!("{path}={value}"));
+            words.collect::<Vec<_>>().join(", ")
+        }
+    };
+    let series = sets.into_iter().map(|set| Series {
+        name: name(&set),
+        vary: vec![along.clone()],
+        set,
+    });
+    series.collect()
 }
 
 /// The most accurate reference for a scene. A user's file is not the built-in scene of the same name.

@@ -276,6 +276,7 @@ impl App {
     /// Resets the screen for a scene that was just opened.
     pub fn opened(&mut self) {
         self.overlay = Overlay::None;
+        self.panes = ShownPanes::default();
         self.selected = 0;
         self.monitor = None;
         (self.answer, self.branch, self.remedy, self.scroll) = (0, 0, 0, 0);

@@ -110,8 +110,11 @@ pub fn draw(buffer: &mut Buffer, area: Rect, points: &[Point], theme: &Theme) {
     };
     buffer.set_style(ground, theme.faint);
     axis(buffer, frame, &scale, theme);
-    let dot =
-        |index: usize, value: f64| [column(index) as f64 * 2.0 + 0.5, scale.height(value) * 4.0];
+    // The line runs through the marks, which are in the middle of a cell.
+    let dot = |index: usize, value: f64| {
+        let row = scale.height(value).floor();
+        [column(index) as f64 * 2.0 + 0.5, row * 4.0 + 1.5]
+    };
     let mut canvas = Canvas::new(field);
     let line: Vec<_> = shown
         .iter()

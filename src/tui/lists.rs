@@ -12,8 +12,12 @@ use stickslip_debugger::history::verdicts::{self, summaries};
 use stickslip_debugger::{BranchTarget, Command, DiagnosisPage, RemedyTrial};
 
 impl App {
-    /// Shows the curve of a monitor, or of the next one.
+    /// Shows the curve of a monitor, or of the next one, also if the pane was hidden.
     pub(super) fn watch(&mut self, monitor: Option<usize>, view: Option<&View>) {
+        let places = screen::places(self, view, self.area);
+        if places.panes.iter().all(|(pane, _)| *pane != Pane::Curve) {
+            self.panes.look_at(Pane::Curve);
+        }
         let monitors = view.map_or(&[][..], |view| &view.model.monitors);
         let shown = view.map_or(0, |view| self.watched(view));
         let at = monitor.unwrap_or((shown + 1) % monitors.len().max(1));

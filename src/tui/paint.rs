@@ -16,7 +16,8 @@ pub fn frame(buffer: &mut Buffer, area: Rect, title: &str, focused: bool, theme:
         true => (BorderType::Thick, theme.focus, theme.focus),
         false => (BorderType::Plain, theme.faint, theme.heading),
     };
-    let title = Line::styled(format!(" {} ", shown::line(title)), title_style);
+    let title = cut(title, usize::from(area.width.saturating_sub(4)));
+    let title = Line::styled(format!(" {title} "), title_style);
     let block = Block::bordered()
         .border_type(kind)
         .border_style(border)
@@ -26,10 +27,15 @@ pub fn frame(buffer: &mut Buffer, area: Rect, title: &str, focused: bool, theme:
     inner
 }
 
-/// Writes lines from top to bottom; lines that do not fit are dropped.
+/// Writes lines from top to bottom; lines that do not fit are dropped, and the end of a long one becomes `…`.
 pub fn lines(buffer: &mut Buffer, area: Rect, lines: &[Line]) {
     for (row, line) in area.rows().zip(lines) {
         line.render(row, buffer);
+        let is_cut = line.width() > usize::from(row.width)
+            && line.to_string().trim_end().width() > usize::from(row.width);
+        if is_cut && let Some(cell) = buffer.cell_mut((row.right().saturating_sub(1), row.y)) {
+            cell.set_symbol("…");
+        }
     }
 }
 

@@ -174,6 +174,10 @@ impl App {
             return self.seek(text, view);
         }
         let line = match purpose {
+            Purpose::Answer if text.is_empty() => {
+                self.complain("no answer was typed; press a to answer, H for a hint");
+                return None;
+            }
             _ if text.is_empty() => return None,
             Purpose::Command | Purpose::Node => text,
             Purpose::Increment => format!("increment {text}"),

@@ -80,13 +80,20 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: Option<&View>) {
 pub fn places(app: &App, view: Option<&View>, area: Rect) -> ScreenAreas {
     let rows = view.map_or(0, |_| lesson::rows(app, area.width));
     let model = view.map(|view| view.model);
+    let mut panes = app.panes;
+    // Before the first iteration there is no decision to show below the table.
+    let has_shape = model.is_none_or(|model| model.finished.is_none());
+    let is_start = has_shape && view.is_some_and(|view| view.event().is_none());
+    if is_start && (panes.focus, panes.page) == (Pane::Nodes, Pane::Decision) {
+        panes.page = Pane::Shape;
+    }
     let choice = Choice {
-        panes: app.panes,
+        panes,
         slaves: view.map_or(0, |view| match app.filter {
             Filter::All => view.model.contacts.len(),
             _ => app.order(view).len(),
         }),
-        has_shape: model.is_none_or(|model| model.finished.is_none()),
+        has_shape,
         lesson: rows,
     };
     layout::places(area, &choice)

@@ -17,8 +17,8 @@ const SIZE: f64 = 20.6;
 const MIDDLE: f64 = 9.4;
 /// Margin around the screen.
 const MARGIN: f64 = 8.0;
-/// Part of the ground in dim text.
-const DIM: f64 = 0.45;
+/// Part of the ground in dim text, as in VTE.
+const DIM: f64 = 1.0 / 3.0;
 
 /// The colours of a terminal: the ground, plain text, and the first 16 colours.
 struct Palette {
@@ -199,7 +199,9 @@ fn mixed(a: Colour, b: Colour, part: f64) -> Colour {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::theme::Theme;
     use ratatui::style::Style;
+    use stickslip_core::model::Mode;
 
     #[test]
     fn a_cell_has_the_colours_of_its_style() {
@@ -216,6 +218,46 @@ mod tests {
         assert_eq!(cell(Style::new().fg(Color::Indexed(32))).0, (0, 135, 215));
         let (dim, ground) = cell(Style::new().add_modifier(Modifier::DIM));
         assert!(dim.0 < DARK.text.0 && dim.0 > ground.0);
+    }
+
+    /// The contrast of two colours as WCAG 2.2 defines it, which asks for 4.5 for text.
+    fn contrast(a: Colour, b: Colour) -> f64 {
+        let light = |(r, g, b): Colour| {
+            let linear = |part: u8| match f64::from(part) / 255.0 {
+                part if part <= 0.04045 => part / 12.92,
+                part => ((part + 0.055) / 1.055).powf(2.4),
+            };
+            0.05 + 0.2126 * linear(r) + 0.7152 * linear(g) + 0.0722 * linear(b)
+        };
+        let (a, b) = (light(a), light(b));
+        a.max(b) / a.min(b)
+    }
+
+    #[test]
+    fn all_text_stands_out_from_its_ground() {
+        for (colours, palette) in [
+            (Colours::Light, LIGHT),
+            (Colours::Dark, DARK),
+            (Colours::HighContrast, DARK),
+        ] {
+            let theme = Theme::new(colours);
+            let modes = [Mode::Free, Mode::Sliding, Mode::Fixed].map(|mode| theme.mode(mode));
+            let others = [
+                theme.text,
+                theme.faint,
+                theme.selected,
+                theme.good,
+                theme.bad,
+                theme.warning,
+            ];
+            for style in modes.into_iter().chain(others) {
+                let mut cell = Cell::default();
+                cell.set_style(theme.ground).set_style(style);
+                let (text, ground) = palette.colours(&cell);
+                let contrast = contrast(text, ground);
+                assert!(contrast >= 4.5, "{} {style:?}: {contrast}", colours.word());
+            }
+        }
     }
 
     #[test]

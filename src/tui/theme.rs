@@ -78,10 +78,12 @@ impl Theme {
         }
     }
 
-    /// For light backgrounds, on which yellow and cyan are hard to see.
+    /// For light backgrounds, on which yellow and cyan are hard to see; orange and blue are darker there.
     fn light() -> Self {
         let colour = |colour| Style::new().fg(colour);
         Theme {
+            sliding: colour(Color::Indexed(130)),
+            fixed: colour(Color::Indexed(25)),
             warning: colour(Color::Magenta).add_modifier(Modifier::BOLD),
             ..Theme::colour()
         }

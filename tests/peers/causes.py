@@ -15,23 +15,27 @@ TIE = "*TIE, NAME=GLUE, POSITION TOLERANCE={}\nSSLIDER, SBASE"
 
 
 class Deck:
-    """The lines of a deck; `bodies` are names with corner, size and elements along x, y and z."""
+    """The lines of a deck; `bodies` are names with corner, size and elements along x, y and z, and perhaps the kind of element.
+    Those in `turned` are turned by 45 degrees about their lower edge along y."""
 
-    def __init__(self, bodies):
+    def __init__(self, bodies, turned=()):
         self.lines, self.nodes, self.elements = ["*NODE"], {}, {}
         count = 0
-        for name, corner, size, n in bodies:
+        for name, corner, size, n, *_ in bodies:
             grid = self.nodes[name] = {}
             for k in range(n[2] + 1):
                 for j in range(n[1] + 1):
                     for i in range(n[0] + 1):
                         count += 1
                         grid[i, j, k] = count
-                        at = (corner[a] + size[a] * v / n[a] for a, v in enumerate((i, j, k)))
+                        x, y, z = (size[a] * v / n[a] for a, v in enumerate((i, j, k)))
+                        if name in turned:
+                            x, z = (x - z) / 2**0.5, (x + z) / 2**0.5
+                        at = (corner[a] + v for a, v in enumerate((x, y, z)))
                         self.lines.append(f"{count}, " + ", ".join(f"{x:.10g}" for x in at))
         count = 0
-        for name, _, _, n in bodies:
-            self.lines.append(f"*ELEMENT, TYPE=C3D8, ELSET={name}")
+        for name, _, _, n, *kind in bodies:
+            self.lines.append(f"*ELEMENT, TYPE={(kind or ['C3D8'])[0]}, ELSET={name}")
             own, grid = self.elements.setdefault(name, {}), self.nodes[name]
             for k in range(n[2]):
                 for j in range(n[1]):
@@ -42,18 +46,18 @@ class Deck:
                         nodes = [grid[i + a, j + b, k + c] for a, b, c in around]
                         self.lines.append(", ".join(map(str, [count] + nodes)))
 
-    def set(self, name, body, row):
-        nodes = [node for (_, _, k), node in self.nodes[body].items() if k == row]
+    def set(self, name, body, row, axis=2):
+        nodes = [node for at, node in self.nodes[body].items() if at[axis] == row]
         self.lines += [f"*NSET, NSET={name}"]
         self.lines += [", ".join(map(str, nodes[k : k + 9])) + "," for k in range(0, len(nodes), 9)]
 
-    def surface(self, name, body, row, face):
-        elements = [element for (_, _, k), element in self.elements[body].items() if k == row]
+    def surface(self, name, body, row, face, axis=2):
+        elements = [element for at, element in self.elements[body].items() if at[axis] == row]
         self.lines += [f"*SURFACE, NAME={name}"] + [f"{element}, {face}" for element in elements]
 
 
 def deck(steps, gap=0.0, x=1.03, K="1e7", friction="0.3, 1e5", face="S2", pair="SSLIDER, SBASE", adjust="", extra=(), base=(3, 3, 2),
-         top=(2, 2, 1), third=False, inc=60, foot=False, without=False):
+         top=(2, 2, 1), third=False, inc=60, foot=False, without=False, aside=False):
     bodies = [("BASE", (0, 0, 0), (4, 4, 2), base), ("SLIDER", (x, 0.97, 2 + gap), (1.9, 1.9, 1.4), top)]
     made = Deck(bodies + [("LOOSE", (6, 0, 0), (1, 1, 1), (1, 1, 1))] * third)
     made.set("FIX", "BASE", 0)
@@ -64,17 +68,65 @@ def deck(steps, gap=0.0, x=1.03, K="1e7", friction="0.3, 1e5", face="S2", pair="
     if third:
         made.set("NLOOSE", "LOOSE", 1)
     if not without:
-        made.surface("SSLIDER", "SLIDER", 0, "S1")
+        made.surface("SSLIDER", "SLIDER", 0, "S6" if aside else "S1", 0 if aside else 2)
     made.lines += extra
+    return finished(made, steps, [pair], K, friction, adjust, inc)
+
+
+def finished(made, steps, pairs, K="1e7", friction="0.3, 1e5", adjust="", inc=60):
+    """The lines of a deck with material, contact and steps."""
     made.lines += ["*MATERIAL, NAME=STEEL", "*ELASTIC", "210000., 0.3"]
     made.lines += [f"*SOLID SECTION, ELSET={name}, MATERIAL=STEEL" for name in made.elements]
     made.lines += ["*SURFACE INTERACTION, NAME=RUB", "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR", K]
     made.lines += ["*FRICTION", friction] if friction else []
-    made.lines += [f"*CONTACT PAIR, INTERACTION=RUB, TYPE=NODE TO SURFACE{adjust}", pair, "*BOUNDARY", "FIX, 1, 3"]
+    for pair in pairs:
+        made.lines += [f"*CONTACT PAIR, INTERACTION=RUB, TYPE=NODE TO SURFACE{adjust}", pair]
+    made.lines += ["*BOUNDARY", "FIX, 1, 3"]
     for loads, time in steps:
         made.lines += [f"*STEP, NLGEOM, INC={inc}", "*STATIC", time, *loads]
         made.lines += ["*CONTACT FILE, CONTACT ELEMENTS", "CDIS", "*END STEP"]
     return made.lines
+
+
+BASE = ("BASE", (0, 0, 0), (4, 4, 2), (3, 3, 2))
+
+
+def stack(steps, friction, joined=True):
+    """SLIDER between BASE and a lid; or, if they are not joined, under a lid with nodes of its own at the same places."""
+    slider, lid = ("SLIDER", (1.03, 0.97, 2), (1.9, 1.9, 1.4), (2, 2, 1)), ("LID", (1.2, 1.1, 3.4), (1.5, 1.6, 1), (2, 2, 1))
+    made = Deck([BASE, slider, lid if joined else ("LID", (1.03, 0.97, 3.4), (1.9, 1.9, 1), (2, 2, 1))])
+    made.set("FIX", "BASE", 0)
+    made.set("TOP", "LID", 1)
+    made.set("SIDE", "SLIDER", 0, 0)
+    made.surface("SBASE", "BASE", 1, "S2")
+    made.surface("SSLIDER", "SLIDER", 0, "S1")
+    if joined:
+        made.surface("STOP", "SLIDER", 0, "S2")
+        made.surface("SLID", "LID", 0, "S1")
+    return finished(made, steps, ["SSLIDER, SBASE"] + ["SLID, STOP"] * joined, friction=friction)
+
+
+def roll(steps):
+    """SLIDER on its edge."""
+    made = Deck([BASE, ("SLIDER", (2, 0.97, 2), (1.4, 1.9, 1.4), (1, 2, 1))], ["SLIDER"])
+    made.set("FIX", "BASE", 0)
+    ends = [made.nodes["SLIDER"][1, j, 1] for j in range(3)]
+    made.lines += ["*NSET, NSET=TOP", ", ".join(map(str, ends))]
+    made.surface("SBASE", "BASE", 1, "S2")
+    made.surface("SSLIDER", "SLIDER", 0, "S1")
+    return finished(made, steps, ["SSLIDER, SBASE"])
+
+
+def beam(load):
+    """A beam of a row of reduced elements above a post."""
+    made = Deck([("POST", (15, -0.5, -2.1), (2, 2, 2), (2, 2, 2)), ("BEAM", (0, 0, 0), (20, 1, 1), (20, 1, 1), "C3D8R")])
+    made.set("FIX", "POST", 0)
+    made.set("CLAMP", "BEAM", 0, 0)
+    made.set("TIP", "BEAM", 20, 0)
+    made.surface("SPOST", "POST", 1, "S2")
+    made.surface("SBEAM", "BEAM", 0, "S1")
+    lines = finished(made, [([load], "0.1, 1., 1e-4, 0.2")], ["SBEAM, SPOST"], "3e6", "0.2, 3e4")
+    return swap(lines, "FIX, 1, 3", "FIX, 1, 3\nCLAMP, 1, 3")
 
 
 def swap(lines, old, new):
@@ -109,7 +161,10 @@ def main_cases():
     cure = "\n".join(f"{k}, S2" for k in range(10, 19))
     yield "reversed", "reversed faces", made, cure, deck(usual)
     made = deck([([LOAD], TIME), (["*CLOAD\nTOP, 1, 15."], TIME)], friction="0.1, 1e5")
-    yield "friction", "load above friction", made, "0.32, 1e5", swap(made, "0.1, 1e5", "0.32, 1e5")
+    yield "friction", "load above friction", made, "0.39, 1e5", swap(made, "0.1, 1e5", "0.39, 1e5")
+    push, cure = "*CLOAD\nTOP, 1, 5.", "*BOUNDARY\nTOP, 1, 1, 0."
+    made = deck([([push], TIME)])
+    yield "unpressed", "load above friction", made, cure, swap(made, push, cure)
     made = deck([([LOAD], TIME)], gap=-0.05)
     cure = "*CONTACT PAIR, INTERACTION=RUB, TYPE=NODE TO SURFACE, ADJUST=0."
     yield "overlap", "overlap at the start", made, cure, swap(made, cure.replace(", ADJUST=0.", ""), cure)
@@ -140,6 +195,39 @@ def main_cases():
     yield "tip", "tipping over", made, cure, swap(made, push, f"{cure}\n{push}")
     made = deck([(["*BOUNDARY\nTOP, 1, 2, 0.\nFOOT, 3, 3, -0.5", LOAD], TIME)], foot=True)
     yield "supported", "constrained slave nodes", made, "** supports no other node", swap(made, "*BOUNDARY\nTOP, 1, 2, 0.\nFOOT, 3, 3, -0.5", HOLD + "\n** supports no other node")
+
+
+def more_cases():
+    """The same for bodies between others, on an edge, in a row of elements, and of other materials."""
+    press = (["*BOUNDARY\nTOP, 1, 2, 0.\nTOP, 3, 3, -0.01"], TIME)
+    push, cure = "*CLOAD\nSIDE, 1, 10.", "*BOUNDARY\nSIDE, 1, 1, 0.\nSIDE, 2, 2, 0."
+    made = stack([press, ([push], TIME)], "")
+    yield "middle", "free to slide", made, cure, swap(made, push, f"{cure}\n{push}")
+    push, cure = "*CLOAD\nSIDE, 1, 500.", "*BOUNDARY\nSIDE, 1, 1, 0."
+    made = stack([press, ([push], TIME)], "0.1, 1e5")
+    yield "between", "held by friction", made, cure, swap(made, push, cure)
+    made = stack([([*press[0], "*CLOAD\nSIDE, 1, 5."], TIME)], "0.3, 1e5", joined=False)
+    cure = ["*SURFACE, NAME=JOIN1", *(f"{k}, S2" for k in range(19, 23)), "*SURFACE, NAME=JOIN2", *(f"{k}, S1" for k in range(23, 27))]
+    cure = "\n".join(cure + ["*TIE, NAME=JOIN", "JOIN2, JOIN1"])
+    yield "unmerged", "unmerged nodes", made, cure, swap(made, "*MATERIAL, NAME=STEEL", f"{cure}\n*MATERIAL, NAME=STEEL")
+    made = deck([([LOAD], TIME)], aside=True)
+    cure = "\n".join(f"{k}, S1" for k in range(19, 23))
+    yield "side-faces", "reversed faces", made, cure, deck([([LOAD], TIME)])
+    load, cure = LOAD + "\nTOP, 1, 5.", "*BOUNDARY\nTOP, 1, 1, 0."
+    made = roll([([load], TIME)])
+    yield "roll", "free to move", made, cure, swap(made, load, f"{cure}\n{load}")
+    made = beam("*CLOAD\nTIP, 3, -25.")
+    cure = "*ELEMENT, TYPE=C3D8, ELSET=BEAM"
+    yield "row", "reduced integration", made, cure, swap(made, cure.replace("C3D8", "C3D8R"), cure)
+    load, cure = "*CLOAD\nTOP, 3, -250.", "*BOUNDARY\nTOP, 3, 3, -0.06"
+    made = swap(deck([([HOLD, load], TIME)], top=(3, 3, 2)), "*ELEMENT, TYPE=C3D8, ELSET=SLIDER", "*ELEMENT, TYPE=C3D8R, ELSET=SLIDER")
+    made = swap(made, "210000., 0.3", "210000., 0.3\n*PLASTIC\n235., 0.\n240., 0.2")
+    yield "plastic", "load above the plastic limit", made, cure, swap(made, load, cure)
+    flat, cure = "*BOUNDARY\nTOP, 1, 2, 0.\nTOP, 3, 3, -1.3", "*BOUNDARY\nTOP, 3, 3, -0.4"
+    made = swap(deck([([flat], SLOW)], K="40.", friction="0.3, 1.", top=(4, 4, 2)), "*MATERIAL, NAME=STEEL", "*MATERIAL, NAME=RUBBER\n*HYPERELASTIC, NEO HOOKE\n0.5, 0.1\n*MATERIAL, NAME=STEEL")
+    made = swap(made, "*ELEMENT, TYPE=C3D8, ELSET=SLIDER", "*ELEMENT, TYPE=C3D8R, ELSET=SLIDER")
+    made = swap(made, "*SOLID SECTION, ELSET=SLIDER, MATERIAL=STEEL", "*SOLID SECTION, ELSET=SLIDER, MATERIAL=RUBBER")
+    yield "squeezed", "squeezed flat", made, cure, swap(made, flat, flat.replace("TOP, 3, 3, -1.3", "TOP, 3, 3, -0.4"))
 
 
 def plane_cases(folder):
@@ -179,7 +267,7 @@ def main():
     folder = sys.argv[1]
     os.makedirs(folder, exist_ok=True)
     rows = [("deck", "rule", "outcome", "cure", "outcome with the cure")]
-    for name, rule, made, cure, cured in [*main_cases(), *plane_cases(folder)]:
+    for name, rule, made, cure, cured in [*main_cases(), *more_cases(), *plane_cases(folder)]:
         outcome = run(folder, name, made)
         after = run(folder, name + "-cured", cured)
         for end in ("inp", "cel", "cvg", "sta"):

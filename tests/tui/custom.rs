@@ -73,8 +73,12 @@ fn a_click_selects_a_node_in_the_table_and_in_the_shape() {
         let rows: Vec<String> = text(&debugger).lines().map(String::from).collect();
         let found = rows.iter().enumerate().find_map(|(y, row)| {
             let letters: Vec<char> = row.chars().collect();
-            let free: Vec<usize> = (0..letters.len()).filter(|&x| letters[x] == 'f').collect();
-            (free.len() == 2 && y > 4).then(|| (free[0] as u16, y as u16))
+            let marked = letters.windows(2).enumerate();
+            let marked: Vec<usize> = marked
+                .filter(|(_, pair)| pair[0].is_alphabetic() && pair[1] == '!')
+                .map(|(x, _)| x)
+                .collect();
+            (marked.len() == 2 && y > 4).then(|| (marked[0] as u16, y as u16))
         });
         let at = found.unwrap_or_else(|| panic!("{}", text(&debugger)));
         click(&mut debugger, (at.0 + 1, at.1));

@@ -493,7 +493,10 @@ fn a_chart_of_the_scene_is_measured_beside_the_run_and_shown_when_it_is_done() {
     debugger.settle();
     let shown = debugger.text(120, 40);
     assert!(shown.contains("Work and precision"), "{shown}");
-    assert!(shown.contains("refine=1, per_element=3"), "{shown}");
+    assert!(
+        shown.contains("a nodes.beam.per_element=3  ") && shown.contains("=3, refine=1"),
+        "{shown}"
+    );
     debugger.type_keys("Esc");
     let shown = debugger.text(120, 40);
     assert!(shown.contains("increment 1") && !shown.contains("chart:"));

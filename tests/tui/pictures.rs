@@ -226,4 +226,52 @@ fn conditions_of_a_scene_by_hand() {
         (found.arrows[0].at, found.arrows[0].along),
         (model.nodes[node].at, [-1.0, 0.0])
     );
+    // A load comes from the side to which an opposite force goes.
+    assert!(found.arrows[0].is_under([3.0, 0.1]));
+    assert!(!found.arrows[0].is_under([-3.0, 0.1]) && !found.arrows[0].is_under([1.0, 1.0]));
+}
+
+#[test]
+fn a_load_is_drawn_next_to_the_contact_force_that_would_cover_it() {
+    let debugger = debugger("osc-inclined-cantilever", "c Tab Tab Tab z");
+    let seen = debugger.text(120, 40);
+    let rows: Vec<&str> = seen.lines().collect();
+    let row = |sign: &str| rows.iter().position(|row| row.contains(sign)).unwrap();
+    assert!(row("←") < row("→"), "{seen}");
+    // The letter is the mode in which the force was found.
+    assert!(seen.contains("x!"), "{seen}");
+}
+
+#[test]
+fn at_the_start_a_small_screen_shows_the_shape_instead_of_a_decision() {
+    let mut debugger = debugger("01-pinned-beam-rough-floor", "");
+    let seen = debugger.text(80, 24);
+    assert!(
+        seen.contains(" Shape ") && !seen.contains(" Decision "),
+        "{seen}"
+    );
+    debugger.type_keys("s");
+    debugger.settle();
+    let seen = debugger.text(80, 24);
+    assert!(
+        seen.contains(" Decision ") && !seen.contains(" Shape "),
+        "{seen}"
+    );
+}
+
+#[test]
+fn an_empty_answer_is_reported_and_a_monitor_shows_its_curve() {
+    let mut debugger = debugger("01-pinned-beam-rough-floor", ":lesson by-hand@2 Enter");
+    debugger.type_keys("a Enter");
+    debugger.settle();
+    let seen = debugger.text(120, 40);
+    assert!(
+        seen.contains("no answer was typed; press a to answer"),
+        "{seen}"
+    );
+    let mut debugger = self::debugger("01-pinned-beam-rough-floor", "2 f");
+    assert!(!debugger.text(120, 40).contains("Load over"));
+    debugger.type_keys("y");
+    let seen = debugger.text(120, 40);
+    assert!(seen.contains("Load over"), "{seen}");
 }

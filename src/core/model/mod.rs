@@ -122,7 +122,7 @@ pub struct RunFinding {
     pub rule: &'static str,
     /// The cause with its numbers.
     pub cause: String,
-    /// What to change, and in which line of the input.
+    /// What to change, and in which line of the input; empty if the cause of another finding must be removed first.
     pub cure: String,
     /// The new lines of the input; empty if there are none.
     pub lines: String,

@@ -4,7 +4,7 @@ use super::outline::Point;
 use std::collections::{BTreeMap, BTreeSet};
 use stickslip_core::Model;
 use stickslip_core::model::{BodyKind, Component};
-use stickslip_core::plane::minus;
+use stickslip_core::plane::{dot, minus};
 
 /// What an arrow or a turn stands for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -24,6 +24,20 @@ pub struct ConditionArrow {
     pub at: Point,
     /// Its direction; the largest of its kind has length 1.
     pub along: Point,
+}
+
+impl ConditionArrow {
+    /// Whether a contact force that starts at the same point covers the arrow.
+    pub fn is_under(&self, force: Point) -> bool {
+        /// Cosine of the angle from which on two arrows are apart.
+        const APART: f64 = 0.9;
+        let side = match self.given {
+            Given::Load => -1.0,
+            Given::Motion => 1.0,
+        };
+        let [[a, b], [x, y]] = [self.along, force];
+        side * dot(self.along, force) > APART * a.hypot(b) * x.hypot(y)
+    }
 }
 
 /// A supported node, and whether x, y and its rotation are restrained.

@@ -102,8 +102,8 @@ pub enum FrozenChange {
     Answer(usize),
     /// `settings.t_max=consistent`.
     ConsistentLimit,
-    /// The other value of `settings.slip`.
-    OtherSlip,
+    /// The other value of `settings.slip`, as a word.
+    OtherSlip(&'static str),
 }
 
 impl Diagnosis {
@@ -320,11 +320,12 @@ fn ways(problem: &InterfaceProblem, census: Option<&Census>) -> Vec<(FrozenChang
         ways.push((FrozenChange::ConsistentLimit, settles(&other)));
     }
     let mut other = problem.clone();
-    other.settings.slip = match problem.settings.slip {
-        SlipCount::Increment => SlipCount::Major,
-        SlipCount::Major => SlipCount::Increment,
+    let (slip, word) = match problem.settings.slip {
+        SlipCount::Increment => (SlipCount::Major, "major"),
+        SlipCount::Major => (SlipCount::Increment, "increment"),
     };
-    ways.push((FrozenChange::OtherSlip, settles(&other)));
+    other.settings.slip = slip;
+    ways.push((FrozenChange::OtherSlip(word), settles(&other)));
     ways
 }
 
@@ -685,13 +686,13 @@ pub fn condition_words(condition: Condition) -> &'static str {
 
 fn way_words(way: FrozenChange, settles: bool) -> String {
     let ends = match settles {
-        true => "settles",
-        false => "does not settle",
+        true => "the frozen problem settles",
+        false => "the frozen problem does not settle",
     };
     let what = match way {
         FrozenChange::Answer(k) => format!(":start-from {}", k + 1),
         FrozenChange::ConsistentLimit => ":set settings.t_max consistent".to_owned(),
-        FrozenChange::OtherSlip => "settings.slip set to its other value".to_owned(),
+        FrozenChange::OtherSlip(other) => format!(":set settings.slip {other}"),
     };
     format!("tried: {what}: {ends}")
 }

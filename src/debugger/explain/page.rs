@@ -203,7 +203,12 @@ impl DiagnosisPage {
             ..Examination::default()
         };
         DiagnosisPage {
-            tries: run.findings.iter().map(TryLine::from_finding).collect(),
+            tries: run
+                .findings
+                .iter()
+                .filter(|f| !f.cure.is_empty())
+                .map(TryLine::from_finding)
+                .collect(),
             ..DiagnosisPage::with_facts(what, facts.collect(), found)
         }
     }
@@ -213,7 +218,8 @@ impl DiagnosisPage {
         let (mut why, mut rest): (Vec<Fact>, Vec<Fact>) =
             facts.into_iter().partition(|fact| fact.part == Part::Why);
         let more = why.split_off(why.len().min(MOST_WHY)).into_iter();
-        rest.extend(more.map(|fact| Fact::new(Part::Details, fact.text)));
+        let more = more.map(|fact| Fact::new(Part::Details, fact.text));
+        rest.splice(0..0, more);
         // Several motions of a body have the same contacts.
         let mut seen: Vec<String> = why.iter().map(|fact| fact.text.clone()).collect();
         rest.retain(|fact| {

@@ -246,6 +246,16 @@ impl<'a> BodyMotion<'a> {
 
     /// The contact or support that would stop the motion.
     fn stopped(&self, state: &State) -> String {
+        let motion = match self.motion {
+            LooseMotion::Translation(along) => {
+                let [x, y] = along.map(|x| sig4(self.sign * x));
+                format!("the motion along ({x}, {y})")
+            }
+            LooseMotion::Rotation(about) => {
+                let [x, y] = about.map(sig4);
+                format!("the rotation about ({x}, {y})")
+            }
+        };
         let mut closing: Vec<(f64, usize)> = Vec::new();
         let mut sliding = Vec::new();
         for (s, [rate, along]) in self.rates(state) {
@@ -261,24 +271,26 @@ impl<'a> BodyMotion<'a> {
         closing.sort_by(|a, b| a.0.total_cmp(&b.0));
         if let Some(&(way, s)) = closing.first() {
             return format!(
-                "what would stop it: contact of {}, after a motion of {}; a prescribed displacement can move the body there in equilibrium, a load cannot",
-                slave(self.model, s),
-                sig4(way)
+                "{motion} by {} closes contact at {}, which would stop it; a prescribed displacement can move the body there in equilibrium, a load cannot",
+                sig4(way),
+                slave(self.model, s)
             );
         }
         let support = match self.motion {
             LooseMotion::Translation([x, y]) => {
                 let axis = if x.abs() >= y.abs() { "x" } else { "y" };
-                format!("a support of one of its nodes in {axis}")
+                format!("a support of one of the body's nodes in {axis}")
             }
-            LooseMotion::Rotation(_) => "a support of one of its nodes away from that point".into(),
+            LooseMotion::Rotation(_) => {
+                "a support of one of the body's nodes away from that point".into()
+            }
         };
         if sliding.is_empty() {
-            return format!("what would stop it: {support}; this motion closes no contact");
+            return format!("{motion} closes no contact; {support} would stop it");
         }
         let nodes = sliding.iter().map(|&s| slave(self.model, s));
         format!(
-            "what would stop it: sticking of {}, up to the friction limit (start: fixed); or {support}",
+            "{motion} closes no contact; sticking of {} would stop it up to the friction limit (start: fixed), and so would {support}",
             first_of(nodes, MOST_NODES, ", ")
         )
     }
@@ -309,8 +321,13 @@ fn since(model: &Model, state: &State, at_start: &Singular) -> String {
     let load = shortest(state.start.load_factor);
     if matches!(at_start, Singular::Rigid { .. }) {
         return match state.next.increment {
-            0 | 1 => "since when: from the start, with the initial modes of its nodes".into(),
-            _ => format!("since when: already with the modes of the last equilibrium, load {load}"),
+            0 | 1 => {
+                "nothing has held the body since the start, with the initial modes of its nodes"
+                    .into()
+            }
+            _ => format!(
+                "nothing has held the body since the last equilibrium, load {load}, or longer"
+            ),
         };
     }
     let rank = |mode: Mode| match mode {
@@ -323,9 +340,9 @@ fn since(model: &Model, state: &State, at_start: &Singular) -> String {
         .map(|s| slave(model, s))
         .collect();
     match let_go.is_empty() {
-        true => format!("since when: after load {load}, at which it was held"),
+        true => format!("the body was held at load {load}"),
         false => format!(
-            "since when: after load {load}, at which it was held; on the way to {}, {} lost contact or stick",
+            "the body was held at load {load}; on the way to {}, {} lost contact or stick",
             shortest(state.load_factor),
             first_of(let_go, MOST_NODES, ", ")
         ),

@@ -11,6 +11,9 @@ use stickslip_scene::number;
 
 /// Round-off in units of the machine precision times the largest term of a sum.
 pub const TIMES: f64 = 64.0;
+/// Forces below this fraction of the force scale are not drawn: next to them, the accuracy to which a solve iterates would be drawn
+/// as large as a force.
+const DRAWN: f64 = 1e-9;
 /// Note for a number that decided something although it is round-off.
 pub const NOTE: &str = "(round-off)";
 
@@ -21,6 +24,8 @@ pub struct RoundOff {
     pub force: f64,
     /// Length.
     pub length: f64,
+    /// Force below which no arrow is drawn.
+    pub drawn: f64,
 }
 
 /// The largest length of a scene: its size or its largest coordinate.
@@ -41,12 +46,18 @@ impl RoundOff {
         RoundOff {
             force: norms.scale * norms.noise.max(ulps),
             length: ulps * reach,
+            drawn: norms.scale * norms.noise.max(DRAWN),
         }
     }
 
     /// A force, or 0 if it is round-off.
     pub fn force(&self, value: f64) -> f64 {
         clean(value, self.force)
+    }
+
+    /// A force as an arrow, or 0 if it is too small to be drawn.
+    pub fn arrow(&self, size: f64) -> f64 {
+        clean(size, self.drawn)
     }
 
     /// A length, or 0 if it is round-off.
@@ -82,9 +93,12 @@ mod tests {
         let round_off = RoundOff {
             force: 1e-12,
             length: 1e-15,
+            drawn: 1e-9,
         };
         assert_eq!(round_off.force(1e-12), 0.0);
         assert_eq!(round_off.force(-1.1e-12), -1.1e-12);
+        assert_eq!(round_off.arrow(1e-10), 0.0);
+        assert_eq!(round_off.arrow(2e-9), 2e-9);
         assert_eq!(round_off.length(f64::INFINITY), f64::INFINITY);
         assert!(round_off.length(f64::NAN).is_nan());
         assert_eq!(round_off.ratio(1e-13, 1e-14), "–");

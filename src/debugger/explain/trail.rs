@@ -68,13 +68,14 @@ pub struct Cone {
 }
 
 impl Cone {
-    /// A cone around these forces; `None` if all are 0.
-    pub fn new(trail: &[TrailPoint], friction: &Friction) -> Option<Cone> {
+    /// A cone around these forces; `None` if none is larger than `drawn`.
+    pub fn new(trail: &[TrailPoint], friction: &Friction, drawn: f64) -> Option<Cone> {
         let largest = |of: &dyn Fn(&TrailPoint) -> f64| trail.iter().map(of).fold(0.0, f64::max);
         let mu = friction.coefficient();
         let (f_n, f_t) = (largest(&|p| p.f_n), largest(&|p| p.f_t.abs()));
         let least = trail.iter().map(|p| p.f_n).fold(0.0, f64::min);
-        if f_n.max(f_t).max(-least) <= 0.0 {
+        // An attached solver may report no scale of forces.
+        if f_n.max(f_t).max(-least) <= drawn.max(0.0) {
             return None;
         }
         // Without compression the cone is as high as the shear that it is compared with.
@@ -185,7 +186,7 @@ mod tests {
             angle: 45.0,
             cohesion: 0.5,
         };
-        let cone = Cone::new(&[point(0.0, 0.0)], &friction).unwrap();
+        let cone = Cone::new(&[point(0.0, 0.0)], &friction, 0.0).unwrap();
         assert!(cone.f_n > 1.0 && cone.f_t > 0.2 && cone.least == 0.0);
         assert_eq!(cone.edge[0], [-0.5, 0.0]);
         assert!((cone.edge[1][0] + cone.f_n + 0.5).abs() < 1e-9);
@@ -202,6 +203,6 @@ mod tests {
             f_t: 0.0,
             ..point(0.0, 0.0)
         };
-        assert_eq!(Cone::new(&[none], &friction), None);
+        assert_eq!(Cone::new(&[none], &friction, 0.0), None);
     }
 }

@@ -143,6 +143,8 @@ pub struct Material {
     pub elastic: Option<(f64, f64)>,
     /// Mass per volume.
     pub density: Option<f64>,
+    /// Largest yield stress; only in an outline.
+    pub yields: Option<f64>,
     /// Coefficient of thermal expansion, if it is a single one.
     pub expansion: Option<f64>,
     /// Where it is defined.

@@ -422,6 +422,20 @@ pub(super) const COUPLING: &[&str] = &[
     "TRANSFORM",
 ];
 
+/// How the rules on a finished run read a keyword, by its name without spaces, that the solver refuses.
+pub(super) fn outlined(key: &str) -> Option<Reading> {
+    let read: fn(&mut Reader, &Card<'_>) -> Done = match key {
+        "PLASTIC" => Reader::plastic,
+        "HYPERELASTIC" => Reader::hyperelastic,
+        _ => return None,
+    };
+    Some(Reading {
+        pass: Laws,
+        parameters: ANY,
+        read,
+    })
+}
+
 /// Treatment of a keyword, by its name in uppercase without spaces.
 pub(super) fn treatment(key: &str) -> Option<Treatment> {
     let plain = |name: &str| name.chars().filter(|c| !c.is_whitespace()).eq(key.chars());

@@ -140,8 +140,11 @@ impl Reader {
         }
         match treatment(&card.key) {
             None | Some(Treatment::Refused(_)) if self.is_outline => {
-                self.skip(card, "it is not considered");
-                Ok(None)
+                let reading = keywords::outlined(&card.key);
+                if reading.is_none() {
+                    self.skip(card, "it is not considered");
+                }
+                Ok(reading)
             }
             Some(Treatment::Refused(why)) => bail!(card, "{why}"),
             None => {

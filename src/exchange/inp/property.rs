@@ -58,6 +58,7 @@ impl Reader {
             name: free(card, &self.deck.materials, |m| &m.name)?,
             elastic: None,
             density: None,
+            yields: None,
             expansion: None,
             place: card.place,
             elastic_place: card.place,
@@ -100,6 +101,40 @@ impl Reader {
         let material = self.last_material(card)?;
         let (first, _) = first_of(card, "the density, at one temperature,", "the density")?;
         material.density = Some(first.number("the density")?);
+        Ok(())
+    }
+
+    /// The largest stress of the table.
+    pub(super) fn plastic(&mut self, card: &Card<'_>) -> Done {
+        let stresses = card.lines.iter().map(|line| cells(*line));
+        let stresses =
+            stresses.filter_map(|cells| cells.first().map(|cell| cell.number("a yield stress")));
+        let stresses = stresses.collect::<Done<Vec<f64>>>()?;
+        self.last_material(card)?.yields = stresses.into_iter().reduce(f64::max);
+        Ok(())
+    }
+
+    /// The moduli at small strains of the two laws with polynomials of first order.
+    pub(super) fn hyperelastic(&mut self, card: &Card<'_>) -> Done {
+        let count = match card {
+            _ if card.has("NEOHOOKE") => 1,
+            _ if card.has("MOONEY-RIVLIN") => 2,
+            _ => bail!(card, "only NEO HOOKE and MOONEY-RIVLIN are considered"),
+        };
+        let cells: Vec<_> = card.cells().collect();
+        let Some((shear, compliance)) = cells.get(..count).zip(cells.get(count)) else {
+            bail!(card, "coefficients are missing");
+        };
+        let shear: Vec<f64> = shear
+            .iter()
+            .map(|cell| cell.number("a coefficient"))
+            .collect::<Done<_>>()?;
+        let (shear, compliance) = (2.0 * shear.iter().sum::<f64>(), compliance.number("D1")?);
+        // E = 9 K G / (3 K + G) with K = 2 / D1.
+        let young = 18.0 * shear / (6.0 + shear * compliance);
+        let material = self.last_material(card)?;
+        material.elastic = Some((young, young / (2.0 * shear) - 1.0));
+        material.elastic_place = card.place;
         Ok(())
     }
 

@@ -560,3 +560,25 @@ fn instances_repeat_their_part_with_their_own_numbers_names_and_position() {
         assert!(found.contains(why), "{found}");
     }
 }
+
+#[test]
+fn an_outline_takes_small_strain_moduli_and_the_largest_yield_stress_from_laws_that_the_solver_refuses()
+ {
+    let first = |law: &str| {
+        let at = PLATES.find("*ELASTIC").unwrap();
+        let text = format!("{}{law}\n{}", &PLATES[..at], &PLATES[at..]);
+        assert!(refusal(&text).contains("*ELASTIC"), "{law}");
+        // Without *ELASTIC, which would replace the moduli.
+        let text = text.replacen("*ELASTIC", "*HEADING", 1);
+        outline("job.inp", &text, &mut alone).unwrap().materials[0].clone()
+    };
+    // G = 2 C10 = 1, K = 2 / D1 = 4: E = 9 K G / (3 K + G), nu = E / (2 G) - 1.
+    let (young, poisson) = first("*HYPERELASTIC, NEO HOOKE\n0.5, 0.5").elastic.unwrap();
+    assert!((young - 36.0 / 13.0).abs() < 1e-12);
+    assert!((poisson - 5.0 / 13.0).abs() < 1e-12);
+    let (young, poisson) = first("*HYPERELASTIC, MOONEY-RIVLIN\n0.2, 0.3, 0")
+        .elastic
+        .unwrap();
+    assert_eq!((young, poisson), (3.0, 0.5));
+    assert_eq!(first("*PLASTIC\n235, 0\n240, 0.2").yields, Some(240.0));
+}

@@ -101,6 +101,7 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     if field.height < HIGH || width < LABELS + 6 {
         return;
     }
+    let drawn = view.round_off().drawn;
     for (place, picture) in (0..).zip(pictures) {
         let area = Rect {
             x: field.x + place * width,
@@ -109,7 +110,7 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         };
         match picture {
             Picture::Cone => {
-                let cone = friction.and_then(|friction| Cone::new(&trail, &friction));
+                let cone = friction.and_then(|friction| Cone::new(&trail, &friction, drawn));
                 draw_cone(buffer, area, cone.as_ref(), &trail, app);
             }
             Picture::Circle => circle(buffer, area, (&trail, record), app),

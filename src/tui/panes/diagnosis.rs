@@ -65,16 +65,13 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let mut title = "Diagnosis".to_string();
     let found = match view.examination() {
         None => Err(
-            " No diagnosis yet. Press d (or :census) to analyse the problem that is solved next.",
+            "No diagnosis yet. Press d (or :census) to analyse the problem that is solved next.",
         ),
-        Some(None) => Err(" Analysing …"),
+        Some(None) => Err("Analysing …"),
         Some(Some(found)) => Ok(found),
     };
     let lines = match found {
-        Err(text) => paint::wrap(text, width)
-            .into_iter()
-            .map(|line| Line::styled(line, theme.faint))
-            .collect(),
+        Err(text) => paint::wrapped(text, width, theme.faint),
         Ok(page) => {
             if !page.going_on.is_empty() {
                 title += &format!(" ({})", page.going_on);

@@ -35,7 +35,7 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let theme = &app.theme;
     let title = match view.model.finished {
         None => "Residual by major iteration",
-        Some(_) => "Residual by iteration of this attempt",
+        Some(_) => "Residual (%) by iteration of this attempt",
     };
     let inner = frame(buffer, area, Pane::Residual, title, app);
     let Some((_, last)) = view.residuals.last() else {
@@ -90,7 +90,7 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         };
         let rows = [
             row(&|(number, _)| number.to_string()),
-            row(&|(_, norms)| format!("● {}", words(norms.relative))).style(theme.text),
+            row(&|one| format!("● {}", words(point(one, view).main))).style(theme.text),
             row(&|one| format!("○ {}", words(point(one, view).other))),
         ];
         paint::lines(buffer, plot, &rows);
@@ -115,13 +115,22 @@ fn short(value: f64, view: &View) -> String {
 
 /// An iteration with its norms.
 fn point((number, norms): &(u32, Norms), view: &View) -> Point {
-    let finished = view.model.finished.as_ref();
+    let Some(run) = &view.model.finished else {
+        return Point {
+            number: *number,
+            main: norms.relative,
+            limit: norms.limit,
+            other: norms.interface,
+            other_limit: None,
+        };
+    };
+    // In percent, as in the caption.
     Point {
         number: *number,
-        main: norms.relative,
-        limit: norms.limit,
-        other: finished.map_or(norms.interface, |_| norms.correction),
-        other_limit: finished.map(|run| run.correction_limit),
+        main: 100.0 * norms.relative,
+        limit: 100.0 * norms.limit,
+        other: 100.0 * norms.correction,
+        other_limit: Some(100.0 * run.correction_limit),
     }
 }
 

@@ -107,17 +107,21 @@ pub fn picture(buffer: &mut Buffer, inner: Rect, app: &App, view: &View) -> Opti
     bodies(&mut canvas, &window, app, view);
     surfaces(&mut canvas, &window, app, view);
     let given = shown_conditions(view, &window);
-    for (line, style, _) in given.arrows.iter().map(|one| drawn(one, &window, app)) {
+    let (forces, longest) = forces(&window, view);
+    let arrows = || {
+        let arrows = given.arrows.iter();
+        arrows.map(|one| drawn(one, &forces, &window, app))
+    };
+    for (line, style, _) in arrows() {
         canvas.dotted(line[0], line[1], style, SPARSE);
     }
-    let (forces, longest) = forces(&window, view);
     let style = app.theme.bad.remove_modifier(Modifier::REVERSED);
     forces
         .iter()
         .for_each(|[from, to]| canvas.line(*from, *to, style));
     let motions = motions(&mut canvas, &window, app, view);
     canvas.render(buffer);
-    for (line, style, glyphs) in given.arrows.iter().map(|one| drawn(one, &window, app)) {
+    for (line, style, glyphs) in arrows() {
         head(buffer, &canvas, &line, (glyphs, style));
     }
     supports(buffer, &canvas, &window, given, app, view);
@@ -127,8 +131,8 @@ pub fn picture(buffer: &mut Buffer, inner: Rect, app: &App, view: &View) -> Opti
     for line in &motions {
         head(buffer, &canvas, line, (HEADS, app.theme.strong));
     }
-    body_names(buffer, &canvas, &window, app, view);
     slaves(buffer, &canvas, &window, app, view);
+    body_names(buffer, &canvas, &window, app, view);
     if let Some((x, y)) = view
         .worst_point()
         .and_then(|point| canvas.cell(window.dot(point.at)))
@@ -242,8 +246,6 @@ fn body_names(buffer: &mut Buffer, canvas: &Canvas, window: &Window, app: &App, 
         return;
     }
     let area = canvas.area();
-    // A name may cover dim lines, such as those between elements, but not outlines and forces.
-    let gives_way = |cell: &Cell| cell.symbol() == " " || cell.modifier.contains(Modifier::DIM);
     for body in &view.model.bodies {
         let name = paint::cut(&body.name, 12);
         let wide = name.width() as u16;
@@ -261,15 +263,28 @@ fn body_names(buffer: &mut Buffer, canvas: &Canvas, window: &Window, app: &App, 
             continue;
         }
         let left = left as u16;
+        // A letter next to the name would read as a part of it.
+        let is_apart = |at: (u16, u16)| {
+            let cell = buffer.cell(at);
+            cell.is_none_or(|cell| !cell.symbol().contains(char::is_alphanumeric))
+        };
         let blank = |row: u16| {
             (area.top()..area.bottom()).contains(&row)
                 && (left..left + wide).all(|x| gives_way(&buffer[(x, row)]))
+                && (1..=2).all(|k| is_apart((left.wrapping_sub(k), row)))
+                && (0..2).all(|k| is_apart((left + wide + k, row)))
         };
         let rows = [y, y.saturating_sub(1), y + 1, y.saturating_sub(2), y + 2];
         if let Some(row) = rows.into_iter().find(|row| blank(*row)) {
             paint::label(buffer, (left, row), &name, app.theme.heading, &app.theme);
         }
     }
+}
+
+/// Whether a name may cover a cell: dim lines, such as those between elements, but not outlines, forces and letters.
+fn gives_way(cell: &Cell) -> bool {
+    let is_line = cell.symbol() >= "\u{2800}";
+    cell.symbol() == " " || (is_line && cell.modifier.contains(Modifier::DIM))
 }
 
 /// Mean position of nodes.
@@ -348,7 +363,7 @@ fn forces(window: &Window, view: &View) -> (Vec<[Dot; 2]>, f64) {
         return (Vec::new(), 0.0);
     };
     let round_off = view.round_off();
-    let size = |f_n: f64, f_t: f64| round_off.force(f_n.hypot(f_t));
+    let size = |f_n: f64, f_t: f64| round_off.arrow(f_n.hypot(f_t));
     let largest = event
         .nodes
         .iter()
@@ -377,9 +392,11 @@ fn shown_conditions(view: &View, window: &Window) -> Conditions {
     conditions(view.model, load_factor, &|node| window.place(view, node))
 }
 
-/// The line of a load, which ends at its node, or of a prescribed motion, which starts there; its style and its heads.
+/// The line of a load, which ends at its node, or of a prescribed motion, which starts there; its style and its heads. It is drawn
+/// next to a contact force that covers it.
 fn drawn(
     arrow: &ConditionArrow,
+    forces: &[[Dot; 2]],
     window: &Window,
     app: &App,
 ) -> ([Dot; 2], Style, [&'static str; 8]) {
@@ -391,7 +408,23 @@ fn drawn(
         Given::Load => (part(-1.0 - off / length), part(-off / length), HEADS),
         Given::Motion => (arrow.at, part(1.0), DOUBLE_HEADS),
     };
-    ([window.dot(from), window.dot(to)], app.theme.good, heads)
+    let (at, line) = (window.dot(arrow.at), [window.dot(from), window.dot(to)]);
+    let is_covered = forces
+        .iter()
+        .any(|[tail, tip]| *tail == at && arrow.is_under([tip[0] - tail[0], tail[1] - tip[1]]));
+    let line = match is_covered {
+        true => beside(line),
+        false => line,
+    };
+    (line, app.theme.good, heads)
+}
+
+/// A line moved sideways by a row of cells: upwards, unless it is vertical.
+fn beside([from, to]: [Dot; 2]) -> [Dot; 2] {
+    let [x, y] = [to[0] - from[0], to[1] - from[1]];
+    let length = x.hypot(y).max(1e-300).copysign(-x);
+    let aside = [-y, x].map(|part| CLEAR * part / length);
+    [from, to].map(|[x, y]| [x + aside[0], y + aside[1]])
 }
 
 /// Supports: a triangle for a restrained component, a filled one for both, a square if the rotation is restrained as well; moments
@@ -483,8 +516,8 @@ fn slaves(buffer: &mut Buffer, canvas: &Canvas, window: &Window, app: &App, view
         let Some((x, y)) = canvas.cell(window.dot(window.place(view, node))) else {
             continue;
         };
-        // The shape must not reveal a mode that is still to be predicted.
-        let mode = app.shown_mode(view, slave);
+        // The mode in which the drawn forces were found.
+        let mode = view.mode_before(slave);
         let style = theme.mode(mode).add_modifier(Modifier::BOLD);
         let style = match slave == selected {
             true => style.add_modifier(Modifier::REVERSED),
@@ -510,10 +543,7 @@ fn name(buffer: &mut Buffer, canvas: &Canvas, (x, y): (u16, u16), name: &str, th
     let name = paint::cut(name, 12);
     let width = name.width() as u16;
     let is_free = |buffer: &Buffer, at: (u16, u16)| {
-        buffer.cell(at).is_some_and(|cell| {
-            let is_line = cell.symbol() >= "\u{2800}" && cell.modifier == theme.faint.add_modifier;
-            area.contains(at.into()) && (cell.symbol() == " " || is_line)
-        })
+        area.contains(at.into()) && buffer.cell(at).is_some_and(gives_way)
     };
     let places = [x + 2, x.saturating_sub(width + 1)]
         .into_iter()

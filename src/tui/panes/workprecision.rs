@@ -19,9 +19,10 @@ use stickslip_study::log_axis::{LogAxis, written};
 use stickslip_study::precision::{Point, Precision, ROUND_OFF};
 
 /// Columns left of the plot, for the axis labels.
-const LEFT: u16 = 7;
-/// Rows below the plot: axis, selected run (two), source.
+const LEFT: u16 = 8;
+/// Rows below the plot: numbers, axis, selected run (two), and the source, or without a column for them the series in two rows.
 const BELOW: u16 = 5;
+const BELOW_NARROW: u16 = 6;
 /// Columns for the list of series, if there is room.
 const LEGEND: u16 = 36;
 
@@ -44,7 +45,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, page: &ChartPage, theme: &Theme) {
     };
     let title = format!("Work and precision  {}{number}", chart.title);
     let inner = paint::frame(buffer, area, &title, true, theme);
-    if inner.height < BELOW + 4 || inner.width < LEFT + 12 {
+    if inner.height < BELOW_NARROW + 4 || inner.width < LEFT + 12 {
         paint::note(buffer, inner, "no room", theme);
         return;
     }
@@ -53,11 +54,12 @@ pub fn draw(buffer: &mut Buffer, area: Rect, page: &ChartPage, theme: &Theme) {
     } else {
         0
     };
+    let below = if legend > 0 { BELOW } else { BELOW_NARROW };
     let plot = Rect {
         x: inner.x + LEFT,
         y: inner.y + 1,
         width: inner.width - LEFT - legend - 1,
-        height: inner.height - 1 - BELOW,
+        height: inner.height - 1 - below,
     };
     plot_runs(buffer, plot, page, theme);
     if legend > 0 {
@@ -70,13 +72,13 @@ pub fn draw(buffer: &mut Buffer, area: Rect, page: &ChartPage, theme: &Theme) {
     }
     let below = Rect {
         y: plot.bottom() + 1,
-        height: BELOW - 1,
+        height: below - 1,
         ..inner
     };
     paint::lines(
         buffer,
         below,
-        &details(page, theme, usize::from(inner.width)),
+        &details(page, theme, usize::from(inner.width), legend > 0),
     );
 }
 
@@ -189,7 +191,7 @@ fn series(chart: &Precision, theme: &Theme, width: usize) -> paint::Lines {
 }
 
 /// Details of the selected run, and the source of the chart.
-fn details(page: &ChartPage, theme: &Theme, width: usize) -> paint::Lines {
+fn details(page: &ChartPage, theme: &Theme, width: usize, has_legend: bool) -> paint::Lines {
     let chart = page.shown();
     let forces = if page.is_force {
         " of contact forces"
@@ -221,15 +223,25 @@ fn details(page: &ChartPage, theme: &Theme, width: usize) -> paint::Lines {
         counted(point.minors, "minor iteration")
     );
     let about = page.charts.last().and_then(|chart| chart.about.last());
-    let about = format!(" {}", about.map_or("", String::as_str));
-    [
+    let lines = [
         (axis, theme.faint),
         (name, theme.strong),
         (cost, theme.text),
-        (about, theme.faint),
-    ]
-    .map(|(text, style)| Line::styled(paint::cut(&text, width), style))
-    .into()
+    ];
+    let lines = lines.map(|(text, style)| Line::styled(paint::cut(&text, width), style));
+    // Without a column for the series, they replace the source.
+    let last = match has_legend {
+        true => {
+            let about = format!(" {}", about.map_or("", String::as_str));
+            vec![Line::styled(paint::cut(&about, width), theme.faint)]
+        }
+        false => {
+            let names = chart.series.iter().enumerate();
+            let names = names.map(|(k, name)| format!("{} {name}", letter(k, false)));
+            paint::wrapped(&names.collect::<Vec<_>>().join("  "), width, theme.faint)
+        }
+    };
+    lines.into_iter().chain(last).collect()
 }
 
 #[cfg(test)]

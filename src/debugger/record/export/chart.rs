@@ -154,13 +154,14 @@ pub(super) fn cone(sheet: &mut Sheet, shown: &ExportState, high: f64) -> Result<
     let friction = shown.state.controls.friction[slave];
     let trail = trail::trail(shown.events.iter().rev().map(|event| &**event), slave);
     let name = names::slave(model, slave);
-    let (Some(cone), Some(now)) = (Cone::new(&trail, &friction), trail.last()) else {
-        return sheet.paragraph(&[format!("no force at {name}")], LABEL, GREY);
-    };
     let round_off = shown
         .event
         .map(|event| RoundOff::new(model, &event.before))
         .unwrap_or_default();
+    let cone = Cone::new(&trail, &friction, round_off.drawn);
+    let (Some(cone), Some(now)) = (cone, trail.last()) else {
+        return sheet.paragraph(&[format!("no force at {name}")], LABEL, GREY);
+    };
     let clean = |force: f64| sig4(round_off.force(force));
     let words = format!(
         "{name}: F_n {}, F_t {}, T_max {}; friction angle {}°",

@@ -20,6 +20,7 @@ pub mod skeleton;
 pub mod written;
 
 mod chart;
+mod conditions;
 mod pressures;
 mod timeline;
 mod window;

@@ -9,7 +9,7 @@ use super::export_state::{ExportError, ExportState, PicturePart};
 use super::timeline::{self, chosen, colour};
 use super::window::{FORCE, Window};
 use crate::RoundOff;
-use crate::explain::conditions::{Given, conditions, supports};
+use crate::explain::conditions::{Given, conditions};
 use crate::explain::names;
 use crate::explain::outline::{self, Bounds, Point, Projection, curve, extent};
 use stickslip_core::model::{BodyKind, SolidElement};
@@ -25,7 +25,7 @@ use stickslip_study::sheet::{
 };
 
 /// Projection of scenes in space.
-const OBLIQUE: Projection = Projection::Oblique;
+pub(super) const OBLIQUE: Projection = Projection::Oblique;
 /// Width of the picture, and height of the shape or the chart.
 const WIDTH: f64 = 980.0;
 const HIGH: f64 = 400.0;
@@ -33,9 +33,7 @@ const HIGH: f64 = 400.0;
 const LOW: f64 = 120.0;
 const NARROW: f64 = 480.0;
 /// Length of the largest load and prescribed motion, in pixels.
-const LOAD: f64 = 52.0;
-/// Colour of supports, loads and prescribed motions.
-const GREEN: Colour = (0, 120, 86);
+pub(super) const LOAD: f64 = 52.0;
 /// Length of a normal, in pixels.
 const NORMAL: f64 = 13.0;
 /// Pixels between two normals.
@@ -227,9 +225,9 @@ fn shape(
     let pressure = shape.pressures();
     shape.conditions();
     let largest = shape.forces();
-    shape.slaves(rows)?;
+    let numbered = shape.slaves(rows)?;
     shape.sheet.height = top + high + 0.5 * MARGIN;
-    shape.legend(largest, magnified)?;
+    shape.legend(largest, magnified, numbered)?;
     if pressure > 0.0 {
         let text = format!(
             "Blue: contact pressure F_n / A on undeformed areas, maximum {}",
@@ -246,11 +244,11 @@ pub(super) struct ShapeDrawing<'a> {
     pub window: Window,
     pub shown: &'a ExportState<'a>,
     /// Deformed position of a node.
-    now: &'a dyn Fn(usize) -> Point,
+    pub now: &'a dyn Fn(usize) -> Point,
     /// Size of the markers of slave nodes.
-    marked: f64,
+    pub marked: f64,
     /// What labels must not cover.
-    taken: OccupiedArea,
+    pub taken: OccupiedArea,
 }
 
 impl ShapeDrawing<'_> {
@@ -370,60 +368,6 @@ impl ShapeDrawing<'_> {
         }
     }
 
-    /// Supports, loads and prescribed motions.
-    fn conditions(&mut self) {
-        let load_factor = self.shown.event.map_or(0.0, |event| event.load_factor);
-        let found = conditions(&self.shown.scene.model, load_factor, self.now);
-        for (node, held) in supports(&self.shown.scene.model) {
-            let at = self.at(node);
-            let kind = match held {
-                [true, true, true] => 1,
-                [true, true, false] | [false, true, _] => 2,
-                [true, false, _] | [false, false, _] => 3,
-            };
-            if self.window.holds(at) {
-                self.sheet.marker(at, kind, 3.5, GREEN);
-            }
-        }
-        for arrow in &found.arrows {
-            let at = self.window.at(arrow.at);
-            let [x, y] = arrow.along.map(|x| LOAD * x);
-            let clear = (self.marked + 3.0) / x.hypot(y).max(1e-300);
-            let part = |by: f64| (at.0 + by * x, at.1 - by * y);
-            let (from, to) = match arrow.given {
-                Given::Load => (part(-1.0 - clear), part(-clear)),
-                Given::Motion => (part(clear), part(1.0 + clear)),
-            };
-            if !self.window.holds(at) {
-                continue;
-            }
-            self.sheet.arrow(from, to, 1.6, GREEN);
-            if arrow.given == Given::Motion {
-                let (side, length) = ([-y, x], x.hypot(y).max(1e-300));
-                let beside =
-                    |p: (f64, f64)| (p.0 + 3.0 * side[0] / length, p.1 - 3.0 * side[1] / length);
-                self.sheet.line(&[beside(from), beside(to)], 1.2, GREEN);
-            }
-            self.taken.take_line(from, to);
-        }
-        for (node, _, left) in found.turns {
-            let at = self.at(node);
-            if self.window.holds(at) {
-                let sign = if left { 1.0 } else { -1.0 };
-                let arc: Vec<(f64, f64)> = (0..=12)
-                    .map(|k| sign * (0.35 + 0.4 * f64::from(k)))
-                    .map(|a| (at.0 + 12.0 * a.cos(), at.1 - 12.0 * a.sin()))
-                    .collect();
-                self.sheet.line(&arc, 1.6, GREEN);
-                if let [.., before, end] = arc[..] {
-                    let far = |a: f64, b: f64| b + 3.0 * (b - a);
-                    let tip = (far(before.0, end.0), far(before.1, end.1));
-                    self.sheet.arrow(before, tip, 1.6, GREEN);
-                }
-            }
-        }
-    }
-
     /// Contact forces on the slave nodes, as arrows from the node in the direction in which the master pushes it; returns the largest.
     fn forces(&mut self) -> f64 {
         let largest = largest(self.shown);
@@ -449,9 +393,11 @@ impl ShapeDrawing<'_> {
         largest
     }
 
-    /// Markers of the slave nodes; those in the table are labelled with their names, or with their numbers where
-    /// names do not fit.
-    fn slaves(&mut self, rows: &[usize]) -> Result<(), PlotError> {
+    /// Markers of the slave nodes; those in the table are labelled with their names or, where a name does not fit, with its row of
+    /// the table. Returns the first such row.
+    fn slaves(&mut self, rows: &[usize]) -> Result<Option<usize>, PlotError> {
+        let has_table = self.shown.picture.only.is_none();
+        let mut numbered = None;
         let model = &self.shown.scene.model;
         let at: Vec<_> = model
             .contacts
@@ -472,20 +418,22 @@ impl ShapeDrawing<'_> {
             if !self.window.holds(at) {
                 continue;
             }
-            for text in [
-                names::slave(model, slave).to_owned(),
-                format!("({})", row + 1),
-            ] {
+            let number = has_table.then(|| format!("({})", row + 1));
+            let texts = [Some(names::slave(model, slave).to_owned()), number];
+            for (k, text) in texts.into_iter().flatten().enumerate() {
                 let size = (widest([text.as_str()], SMALL)? + 4.0, 1.1 * SMALL);
                 if let Some(patch) = self.taken.place(at, size, 60.0) {
                     self.sheet.leader(at, &patch, self.marked + 12.0);
                     self.sheet
                         .text(patch.middle(), &text, SMALL, BLACK, Anchor::Middle);
+                    if k > 0 {
+                        numbered.get_or_insert(row + 1);
+                    }
                     break;
                 }
             }
         }
-        Ok(())
+        Ok(numbered)
     }
 
     /// A text in the legend; returns its width with the space after it.
@@ -494,8 +442,13 @@ impl ShapeDrawing<'_> {
         Ok(widest([text], SMALL)? + 22.0)
     }
 
-    /// The legend: modes, and the scales of lengths and forces.
-    fn legend(&mut self, largest: f64, magnified: f64) -> Result<(), PlotError> {
+    /// The legend: modes, the scales of lengths and forces, and the first node that is labelled with its row of the table.
+    fn legend(
+        &mut self,
+        largest: f64,
+        magnified: f64,
+        numbered: Option<usize>,
+    ) -> Result<(), PlotError> {
         let y = self.sheet.height + 0.7 * LABEL;
         let mut x = MARGIN + 6.0;
         for mode in [Mode::Free, Mode::Sliding, Mode::Fixed] {
@@ -528,8 +481,11 @@ impl ShapeDrawing<'_> {
             true => "to scale".to_owned(),
             false => format!("magnified ×{}", shortest(magnified)),
         };
+        let number = numbered.map_or(String::new(), |row| {
+            format!(" ({row}): the node in row {row} of the table.")
+        });
         let words = format!(
-            "Displacements {scale}, maximum {}; dashed: undeformed; green: supports, loads, and prescribed motions (double line).",
+            "Displacements {scale}, maximum {}; dashed: undeformed; green: supports, loads, and prescribed motions (double line).{number}",
             sig4(moved)
         );
         self.sheet.height = y + 1.2 * LABEL;
@@ -574,11 +530,11 @@ fn size(found: &ContactRecord) -> f64 {
     found.f_n.hypot(found.f_t)
 }
 
-/// The largest contact force above round-off; 0 if there is none.
+/// The largest contact force that is drawn; 0 if there is none.
 fn largest(shown: &ExportState) -> f64 {
     let Some(event) = shown.event else { return 0.0 };
     let round_off = RoundOff::new(&shown.scene.model, &event.before);
-    let sizes = event.nodes.iter().map(|found| round_off.force(size(found)));
+    let sizes = event.nodes.iter().map(|found| round_off.arrow(size(found)));
     sizes.filter(|f| f.is_finite()).fold(0.0, f64::max)
 }
 
@@ -608,7 +564,9 @@ fn moved(shown: &ExportState) -> f64 {
     let model = &shown.scene.model;
     let far = |node: usize| outline::displacement(model, &shown.state.u, node);
     let all = (0..model.nodes.len()).map(far).filter(|d| d.is_finite());
-    all.fold(0.0, f64::max)
+    let largest = all.fold(0.0, f64::max);
+    let round_off = shown.event.map(|event| RoundOff::new(model, &event.before));
+    round_off.map_or(largest, |round_off| round_off.length(largest))
 }
 
 /// The table of some slave nodes.

@@ -19,7 +19,7 @@ impl ShapeDrawing<'_> {
         let round_off = RoundOff::new(model, &event.before);
         let mut of_node = vec![None; model.nodes.len()];
         for (contact, found) in model.contacts.iter().zip(&event.nodes) {
-            let pressure = contact.pressure(round_off.force(found.f_n), 0.0);
+            let pressure = contact.pressure(round_off.arrow(found.f_n), 0.0);
             of_node[contact.node] = pressure.map(|[pressure, _]| (pressure, found.normal));
         }
         let sizes = of_node.iter().flatten().map(|(pressure, _)| pressure.abs());

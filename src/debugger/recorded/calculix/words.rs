@@ -226,7 +226,11 @@ pub fn text(run: &CalculixRun) -> String {
 fn causes(run: &CalculixRun) -> String {
     let causes = run.findings.iter().enumerate().map(|(k, found)| {
         let (number, rule, cause, advice) = (k + 1, found.rule, &found.cause, found.advice());
-        format!("{number}. {rule}: {cause}\n   Cure: {advice}\n")
+        let cure = match advice.is_empty() {
+            true => String::new(),
+            false => format!("   Cure: {advice}\n"),
+        };
+        format!("{number}. {rule}: {cause}\n{cure}")
     });
     match run.findings.is_empty() {
         true => "\nNo rule applies to this run.\n".into(),

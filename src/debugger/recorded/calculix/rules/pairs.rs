@@ -1,7 +1,8 @@
 //! Rules on pairs and ties as the deck defines them: faces, gaps, laws, and slave nodes.
 
+use super::numbers::{plain, rounded, rounded_up};
 use super::shape::{DeckShape, PairShape, SortedPoints, SurfaceFace, Vector};
-use super::supports::{is_free, plain, rounded, rounded_up};
+use super::supports::is_free;
 use std::collections::{BTreeMap, BTreeSet};
 use stickslip_core::RunFinding;
 use stickslip_exchange::inp::Deck;
@@ -24,6 +25,8 @@ const LIGHT: f64 = 1e-6;
 const COARSE: f64 = 2.0;
 /// Cosine between a face and the direction to the other surface, above which it looks away.
 const AWAY: f64 = 0.5;
+/// Cosine between normals of two surfaces, above which they do not face each other.
+const ASIDE: f64 = -0.3;
 /// Maximum number of nodes named.
 const NAMED: usize = 4;
 
@@ -31,22 +34,25 @@ const NAMED: usize = 4;
 pub fn reversed_faces(shape: &DeckShape) -> Vec<RunFinding> {
     let mut found: Vec<RunFinding> = Vec::new();
     for pair in &shape.pairs {
-        let both = [
-            (&pair.slaves, &pair.masters, 0),
-            (&pair.masters, &pair.slaves, 1),
-        ];
-        for (own, other, which) in both {
+        let before = found.len();
+        let both = [(&pair.slaves, &pair.masters), (&pair.masters, &pair.slaves)];
+        let both = both.map(|(own, other)| {
             let other: Vec<Vector> = match other.is_empty() {
                 false => other.iter().map(|face| body_centre(shape, face)).collect(),
                 true => pair.nodes.iter().map(|node| shape.at(node.node)).collect(),
             };
             let sorted = SortedPoints::new(&other);
-            let other = (other, sorted);
-            let wrong = |face: &&SurfaceFace| shape.is_inner(face) || looks_away(face, &other);
+            (own, (other, sorted))
+        });
+        for (which, (own, other)) in both.iter().enumerate() {
+            let wrong = |face: &&SurfaceFace| shape.is_inner(face) || looks_away(face, other);
             let bad: Vec<&SurfaceFace> = own.iter().filter(wrong).collect();
             if 2 * bad.len() > own.len() {
-                found.extend(reversed(shape, pair, which, own.len(), &bad, &other));
+                found.extend(reversed(shape, pair, which, &bad, other));
             }
+        }
+        if found.len() == before && looks_aside(shape, pair) {
+            found.extend(reversed(shape, pair, 0, &[], &both[0].1));
         }
     }
     found.dedup();
@@ -74,22 +80,33 @@ fn facing(face: &SurfaceFace, (points, sorted): &(Vec<Vector>, SortedPoints)) ->
     Some(to.dot(&face.normal))
 }
 
+/// Whether no face of a slave looks at the master face that is nearest to it.
+fn looks_aside(shape: &DeckShape, pair: &PairShape) -> bool {
+    let nearest = |face: &SurfaceFace| {
+        let (nearest, ..) = shape.nearest(face.centre, (&pair.masters, &pair.centres))?;
+        Some(face.normal.dot(&pair.masters[nearest].normal))
+    };
+    let aside = |face| nearest(face).is_none_or(|cosine| cosine > ASIDE);
+    !pair.slaves.is_empty() && !pair.masters.is_empty() && pair.slaves.iter().all(aside)
+}
+
 /// Whether a face looks away from the nearest of some points.
 fn looks_away(face: &SurfaceFace, others: &(Vec<Vector>, SortedPoints)) -> bool {
     facing(face, others).is_some_and(|cosine| cosine < -AWAY)
 }
 
+/// A surface with faces that look away from the other; without such faces it looks aside.
 fn reversed(
     shape: &DeckShape,
     pair: &PairShape,
     which: usize,
-    count: usize,
     bad: &[&SurfaceFace],
     others: &(Vec<Vector>, SortedPoints),
 ) -> Option<RunFinding> {
     let deck = shape.deck;
     let surface = &deck.surfaces[pair.surfaces[which]];
-    let first = bad.first()?;
+    let own = [&pair.slaves, &pair.masters][which];
+    let first = bad.first().copied().or(own.first())?;
     let inner = bad.iter().filter(|face| shape.is_inner(face)).count();
     let label = |side: usize| format!("S{}", side + 1);
     // The outer side of the same element that looks at the other surface.
@@ -100,87 +117,96 @@ fn reversed(
         let to = |face: &SurfaceFace| facing(face, others).unwrap_or(-1.0);
         faces.max_by(|a, b| to(a).total_cmp(&to(b)))
     };
-    let right: BTreeMap<String, Vec<u64>> = bad.iter().fold(BTreeMap::new(), |mut all, face| {
-        let side = better(face).map_or("?".into(), |face| label(face.side));
+    let mut right: BTreeMap<Option<usize>, Vec<u64>> = BTreeMap::new();
+    for face in bad {
+        let side = better(face).map(|face| face.side);
         let element = deck.elements[face.element].label;
-        all.entry(side).or_default().push(element);
-        all
-    });
-    let (side, elements) = right.iter().max_by_key(|(_, elements)| elements.len())?;
+        right.entry(side).or_default().push(element);
+    }
+    let most = right.into_iter().max_by_key(|(_, elements)| elements.len());
+    let same_element = most.and_then(|(side, elements)| Some((side?, elements)));
     let other = &deck.surfaces[pair.surfaces[1 - which]].name;
     let between = match inner {
         0 => String::new(),
         count => format!("; {count} of them lie between two elements"),
     };
     let line = surface.place.line;
-    let (cure, lines) = match side.as_str() {
-        "?" => {
+    let card = format!("*SURFACE, NAME={} (line {line})", surface.name);
+    let (cure, lines) = match same_element {
+        Some((side, elements)) => {
+            let lines: Vec<String> = elements
+                .iter()
+                .map(|element| format!("{element}, {}", label(side)))
+                .collect();
+            (
+                format!("{} instead of {} in {card}", label(side), label(first.side)),
+                lines,
+            )
+        }
+        None => {
             let body = shape.body_of[first.corners[0]];
-            let of_body = |k: &usize| shape.body_of[deck.elements[*k].nodes[0]] == body;
-            let sides = (0..deck.elements.len()).filter(of_body).flat_map(|k| {
-                let sides = 0..deck.elements[k].kind.cell.sides().len();
-                sides.filter_map(move |side| shape.face(k, side))
-            });
-            let outer: Vec<SurfaceFace> = sides.filter(|face| !shape.is_inner(face)).collect();
-            let towards = |face: &SurfaceFace, least: f64| {
-                facing(face, others).is_some_and(|cosine| cosine > least)
-            };
-            let ahead = outer.iter().filter(|face| towards(face, AWAY));
-            let normal: Vector = ahead.map(|face| face.normal).sum();
-            let looks = outer.iter().filter(|face| {
-                face.normal.dot(&normal) > AWAY * normal.norm() && towards(face, 0.0)
-            });
-            let looks: Vec<String> = looks
+            let name = body.map_or("the body", |body| shape.bodies[body].as_str());
+            let looks: Vec<String> = faces_towards(shape, body, others)
+                .iter()
                 .map(|face| {
-                    format!(
-                        "{}, {}",
-                        deck.elements[face.element].label,
-                        label(face.side)
-                    )
+                    let element = deck.elements[face.element].label;
+                    format!("{element}, {}", label(face.side))
                 })
                 .collect();
-            let name = body.map_or("the body", |body| shape.bodies[body].as_str());
-            match looks.is_empty() {
-                true => (
-                    format!(
-                        "none in *SURFACE: no outer face of {name} looks at {other}; move the nodes of {name}"
-                    ),
-                    String::new(),
+            let cure = match looks.is_empty() {
+                true => format!(
+                    "none in *SURFACE: no outer face of {name} looks at {other}; move the nodes of {name}"
                 ),
-                false => (
-                    format!(
-                        "the faces of {name} that look at {other} in *SURFACE, NAME={} (line {line})",
-                        surface.name
-                    ),
-                    looks.join("\n"),
-                ),
-            }
+                false => format!("the faces of {name} that look at {other} in {card}"),
+            };
+            (cure, looks)
         }
-        side => (
-            format!(
-                "{side} instead of {} in *SURFACE, NAME={} (line {line})",
-                label(first.side),
-                surface.name
-            ),
-            elements
-                .iter()
-                .map(|e| format!("{e}, {side}"))
-                .collect::<Vec<_>>()
-                .join("\n"),
+    };
+    let which = match bad.len() {
+        0 => format!(
+            "none of {} faces of {} looks at {other}",
+            own.len(),
+            surface.name
+        ),
+        away => format!(
+            "{away} of {} faces of {} look away from {other}",
+            own.len(),
+            surface.name
         ),
     };
     Some(RunFinding {
         rule: "reversed faces",
         cause: format!(
-            "{} of {count} faces of {} look away from {other}, such as {} of element {}{between}",
-            bad.len(),
-            surface.name,
+            "{which}, such as {} of element {}{between}",
             label(first.side),
             deck.elements[first.element].label
         ),
         cure,
-        lines,
+        lines: lines.join("\n"),
     })
+}
+
+/// The outer faces of a body that look at the nearest of some points.
+fn faces_towards(
+    shape: &DeckShape,
+    body: Option<usize>,
+    others: &(Vec<Vector>, SortedPoints),
+) -> Vec<SurfaceFace> {
+    let elements = &shape.deck.elements;
+    let of_body = (0..elements.len()).filter(|k| shape.body_of[elements[*k].nodes[0]] == body);
+    let sides = of_body.flat_map(|k| {
+        let sides = 0..elements[k].kind.cell.sides().len();
+        sides.filter_map(move |side| shape.face(k, side))
+    });
+    let outer: Vec<SurfaceFace> = sides.filter(|face| !shape.is_inner(face)).collect();
+    let towards =
+        |face: &SurfaceFace, least: f64| facing(face, others).is_some_and(|cosine| cosine > least);
+    let ahead = outer.iter().filter(|face| towards(face, AWAY));
+    let normal: Vector = ahead.map(|face| face.normal).sum();
+    let looks = outer
+        .iter()
+        .filter(|face| face.normal.dot(&normal) > AWAY * normal.norm() && towards(face, 0.0));
+    looks.cloned().collect()
 }
 
 /// Ties of which nodes are beyond the position tolerance, so that they are not tied.
@@ -364,6 +390,8 @@ pub fn constrained_slaves(shape: &DeckShape) -> Vec<RunFinding> {
             .iter()
             .map(|node| (node.node, pair.masters[node.face].normal))
             .collect();
+        let near = pair.nodes.iter().filter(|n| n.beyond <= pair.sizes[1]);
+        let near: BTreeSet<usize> = near.map(|node| node.node).collect();
         let against = supports.iter().filter(|value| {
             let axis = match value.direction {
                 Direction::X => Vector::x(),
@@ -371,8 +399,9 @@ pub fn constrained_slaves(shape: &DeckShape) -> Vec<RunFinding> {
                 Direction::Z => Vector::z(),
                 Direction::Rotation => return false,
             };
-            own.get(&value.node)
-                .is_some_and(|normal| normal.dot(&axis).abs() > 0.9)
+            let normal = own.get(&value.node);
+            let is_against = normal.is_some_and(|normal| normal.dot(&axis).abs() > 0.9);
+            is_against && near.contains(&value.node)
         });
         let against: Vec<&&Value> = against.collect();
         let held: BTreeSet<usize> = against.iter().map(|value| value.node).collect();

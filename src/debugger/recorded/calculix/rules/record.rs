@@ -1,9 +1,10 @@
 //! Rules on the record of a run: increments that ran out, contacts that chatter, corrections at their cap.
 
 use super::super::run::{CalculixRun, Switching};
+use super::numbers::{plain, rounded, rounded_up};
 use super::pairs::pair_card;
 use super::shape::DeckShape;
-use super::supports::{open_at_start, plain, rounded, rounded_up};
+use super::supports::open_at_start;
 use std::collections::BTreeSet;
 use stickslip_core::RunFinding;
 use stickslip_exchange::calculix::cel::Slave;
@@ -83,6 +84,9 @@ pub fn never_closed(run: &CalculixRun, shape: Option<&DeckShape>) -> Vec<RunFind
         }];
     };
     let card = &shape.deck.pairs[k];
+    if node.gap <= 0.0 {
+        return Vec::new();
+    }
     vec![RunFinding {
         rule: "contact never closed",
         cause: format!(
@@ -289,15 +293,14 @@ pub fn capped_correction(run: &CalculixRun, shape: Option<&DeckShape>) -> Vec<Ru
             let [initial, least] = [10.0, 1e4].map(|part| rounded(time.initial / part));
             (
                 format!(
-                    "the cures above, if there are any; otherwise increments 10 times smaller (line {})",
+                    "increments 10 times smaller (line {})",
                     step.static_place.line
                 ),
                 [initial, time.period, least, initial].map(plain).join(", "),
             )
         }
         None => (
-            "the cures above; smaller increments are in the deck, which is not next to the record"
-                .into(),
+            "smaller increments; they are in the deck, which is not next to the record".into(),
             String::new(),
         ),
     };

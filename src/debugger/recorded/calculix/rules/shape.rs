@@ -70,9 +70,7 @@ impl SortedPoints {
     pub fn new(points: &[Vector]) -> SortedPoints {
         let extent = |axis: usize| {
             let along = points.iter().map(|point| point[axis]);
-            let (least, most) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| {
-                (a.min(x), b.max(x))
-            });
+            let (least, most) = extent(along);
             most - least
         };
         let axis = (0..3)
@@ -159,11 +157,15 @@ impl PairShape {
         sum.try_normalize(1e-12).unwrap_or_else(Vector::zeros)
     }
 
+    /// The slave nodes in front of the master.
+    pub fn in_front(&self) -> impl Iterator<Item = &SlaveGap> {
+        let edge = EDGE * self.sizes[1];
+        self.nodes.iter().filter(move |n| n.beyond <= edge)
+    }
+
     /// The slave node with the smallest gap in front of the master.
     pub fn nearest(&self) -> Option<&SlaveGap> {
-        let edge = EDGE * self.sizes[1];
-        let in_front = self.nodes.iter().filter(|n| n.beyond <= edge);
-        in_front.min_by(|a, b| a.gap.total_cmp(&b.gap))
+        self.in_front().min_by(|a, b| a.gap.total_cmp(&b.gap))
     }
 }
 
@@ -279,6 +281,14 @@ impl<'d> DeckShape<'d> {
     /// Group of a node, if it belongs to an element.
     pub fn group(&self, node: usize) -> Option<usize> {
         self.body_of[node].map(|body| self.group_of[body])
+    }
+
+    /// Extent of a group along a direction.
+    pub fn height(&self, group: usize, along: Vector) -> f64 {
+        let nodes = (0..self.deck.nodes.len()).filter(|n| self.group(*n) == Some(group));
+        let at = nodes.map(|node| self.at(node).dot(&along));
+        let (least, most) = extent(at);
+        most - least
     }
 
     /// Name of a group: its bodies.
@@ -561,6 +571,13 @@ impl<'d> DeckShape<'d> {
             (None, None) => 1.0,
         }
     }
+}
+
+/// The smallest and the largest of some numbers.
+fn extent(numbers: impl Iterator<Item = f64>) -> (f64, f64) {
+    numbers.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| {
+        (a.min(x), b.max(x))
+    })
 }
 
 /// The point of a segment, triangle or quadrilateral that is closest to a point, and the weights of the corners there.

@@ -1,8 +1,8 @@
 //! Rules on steps: how far prescribed displacements move contacts per increment and in all, and whether increments can be cut.
 
+use super::numbers::{plain, rounded};
 use super::pairs::pair_card;
 use super::shape::{DeckShape, PairShape, Vector};
-use super::supports::{plain, rounded};
 use std::collections::HashMap;
 use stickslip_core::RunFinding;
 use stickslip_exchange::inp::deck::{Direction, Step};
@@ -14,6 +14,11 @@ const FIRST: f64 = 0.5;
 const ADVISED: f64 = 0.1;
 /// Sliding that needs large displacements, in sizes of a slave face.
 const SLIDING: f64 = 1.0;
+/// Part of a body's height by which squeezing it is reported, and the part that is advised.
+const SQUEEZED: f64 = 0.5;
+const SQUEEZABLE: f64 = 0.3;
+/// A body this much softer than the other bears all of the squeezing.
+const SOFT: f64 = 10.0;
 /// Increments that cannot be cut to this part are reported.
 const CUT: f64 = 0.5;
 
@@ -188,6 +193,49 @@ pub fn small_sliding(shape: &DeckShape) -> Vec<RunFinding> {
         });
     }
     found
+}
+
+/// Prescribed displacements that squeeze the bodies of a pair by much of their height.
+pub fn squeezed(shape: &DeckShape) -> Vec<RunFinding> {
+    let squeezed = moves(shape).filter_map(|(k, step, number, pair)| {
+        let normal = pair.normal();
+        let moved = relative(shape, k, pair, [0.0, step.time.period]);
+        let gap = pair.nearest()?.gap.max(0.0);
+        let squeezed = -moved.dot(&normal) - gap;
+        let moduli = [&pair.slaves, &pair.masters].map(|faces| {
+            let material = faces.first().and_then(|face| shape.material(face.element));
+            material.and_then(|k| shape.deck.materials[k].elastic)
+        });
+        let [slave, master] = pair.groups.map(|group| shape.height(group, normal));
+        let (height, name) = match moduli {
+            [Some((a, _)), Some((b, _))] if a > SOFT * b => {
+                (master, shape.group_name(pair.groups[1]))
+            }
+            [Some((a, _)), Some((b, _))] if b > SOFT * a => {
+                (slave, shape.group_name(pair.groups[0]))
+            }
+            _ => (
+                slave + master,
+                pair.groups
+                    .map(|group| shape.group_name(group))
+                    .join(" and "),
+            ),
+        };
+        let stays = (gap + SQUEEZABLE * height) / (gap + squeezed);
+        (height > 0.0 && squeezed > SQUEEZED * height).then(|| RunFinding {
+            rule: "squeezed flat",
+            cause: format!(
+                "step {} squeezes {name} by {}, {} of its height {}: elements at its edges fold before",
+                k + 1,
+                sig4(squeezed),
+                sig4(squeezed / height),
+                sig4(height)
+            ),
+            cure: format!("a smaller displacement, {SQUEEZABLE} of the height"),
+            lines: shorter(shape, k, number, stays),
+        })
+    });
+    squeezed.collect()
 }
 
 /// Prescribed displacements that move slave nodes past the edge of their master.

@@ -1,0 +1,319 @@
+//! Rigid motions that supports and closed contacts leave to a body, and the loads of a step that act along them.
+
+use super::numbers::vector;
+use super::shape::{DeckShape, PairShape, SlaveGap, Vector};
+use nalgebra::{Matrix3, SMatrix, SVector};
+use std::collections::btree_map::Entry;
+use std::collections::{BTreeMap, BTreeSet};
+use stickslip_exchange::inp::deck::{Direction, Normal, Value, Volume};
+
+/// Translations along x, y, z, then rotations about them, scaled by the body's size.
+pub type Motion = SVector<f64, 6>;
+
+/// Stiffness of the supports, relative to the largest, below which a motion is free.
+const FREE: f64 = 1e-9;
+/// Part of a load along a free motion, relative to the load, above which it moves the body.
+pub const LOADED: f64 = 1e-6;
+/// Part of a motion outside a space of motions, above which it is not one of them.
+const OUTSIDE: f64 = 1e-6;
+
+/// A group of bodies with its supports up to a step, and its loads at the end of it.
+pub struct GroupMotion {
+    /// The group.
+    pub group: usize,
+    /// Mean of its nodes.
+    pub centre: Vector,
+    /// Largest distance of a node from the centre.
+    pub size: f64,
+    /// Its loads, by what they act on.
+    pub forces: BTreeMap<[usize; 3], Force>,
+    supports: SMatrix<f64, 6, 6>,
+    load: Motion,
+}
+
+impl GroupMotion {
+    /// A group at the end of a step.
+    pub fn new(shape: &DeckShape, group: usize, step: usize) -> GroupMotion {
+        let nodes = (0..shape.deck.nodes.len()).filter(|n| shape.group(*n) == Some(group));
+        let at: Vec<Vector> = nodes.map(|node| shape.at(node)).collect();
+        let centre = at.iter().sum::<Vector>() / at.len().max(1) as f64;
+        let size = at.iter().map(|p| (p - centre).norm()).fold(0.0, f64::max);
+        let mut this = GroupMotion {
+            group,
+            centre,
+            size: size.max(f64::MIN_POSITIVE),
+            forces: total_forces(shape, group, step),
+            supports: SMatrix::zeros(),
+            load: Motion::zeros(),
+        };
+        for value in supports(shape, step) {
+            if shape.group(value.node) == Some(group)
+                && let Some(along) = axis(value.direction)
+            {
+                this.hold(shape.at(value.node), along);
+            }
+        }
+        let forces = this.forces.values();
+        this.load = forces.map(|f| this.motion(f.at, f.along)).sum();
+        this
+    }
+
+    /// Sum of the loads.
+    pub fn force(&self) -> Vector {
+        self.forces.values().map(|force| force.along).sum()
+    }
+
+    /// The loaded nodes.
+    pub fn loaded(&self) -> BTreeSet<usize> {
+        let nodes = self.forces.values().flat_map(|force| &force.nodes);
+        nodes.copied().collect()
+    }
+
+    /// The rigid motion that moves a point along a direction.
+    pub fn motion(&self, at: Vector, along: Vector) -> Motion {
+        let turn = (at - self.centre).cross(&along) / self.size;
+        Motion::from_iterator(along.iter().chain(turn.iter()).copied())
+    }
+
+    fn hold(&mut self, at: Vector, along: Vector) {
+        let row = self.motion(at, along);
+        self.supports += row * row.transpose();
+    }
+
+    /// Holds the touching nodes of a pair: along the normal, and along the surface if they stick.
+    pub fn hold_contacts<'s>(
+        &mut self,
+        shape: &DeckShape,
+        pair: &PairShape,
+        touching: impl Iterator<Item = &'s SlaveGap>,
+        sticks: bool,
+    ) {
+        for node in touching {
+            let at = shape.at(node.node);
+            match sticks {
+                true => [Vector::x(), Vector::y(), Vector::z()]
+                    .into_iter()
+                    .for_each(|along| self.hold(at, along)),
+                false => self.hold(at, pair.masters[node.face].normal),
+            }
+        }
+    }
+
+    /// The free motions as columns of unit length.
+    pub fn free(&self, modes: [bool; 6]) -> Vec<Motion> {
+        let mut supports = self.supports;
+        let largest = supports.trace().max(1.0);
+        for (k, _) in modes.iter().enumerate().filter(|(_, moves)| !**moves) {
+            supports[(k, k)] += largest;
+        }
+        let eigen = supports.symmetric_eigen();
+        let values = eigen.eigenvalues.iter().enumerate();
+        let free = values.filter(|(_, value)| **value < FREE * largest);
+        free.map(|(k, _)| eigen.eigenvectors.column(k).into_owned())
+            .collect()
+    }
+
+    /// Whether the load does work on one of the motions.
+    pub fn is_loaded(&self, free: &[Motion]) -> bool {
+        let work = free.iter().map(|motion| motion.dot(&self.load).abs());
+        work.fold(0.0, f64::max) > LOADED * self.load.norm()
+    }
+}
+
+fn axis(direction: Direction) -> Option<Vector> {
+    match direction {
+        Direction::X => Some(Vector::x()),
+        Direction::Y => Some(Vector::y()),
+        Direction::Z => Some(Vector::z()),
+        Direction::Rotation => None,
+    }
+}
+
+/// Supports and prescribed displacements up to a step, without those that OP=NEW removes.
+fn supports<'s>(shape: &'s DeckShape, step: usize) -> impl Iterator<Item = &'s Value> {
+    let steps = shape.deck.steps.iter().take(step + 1);
+    let first = steps.clone().rposition(|step| step.new_motions);
+    let model = shape.deck.supports.iter().filter(move |_| first.is_none());
+    let steps = steps.skip(first.unwrap_or(0));
+    model.chain(steps.flat_map(|step| &step.motions))
+}
+
+/// A point load, or the resultant of a load on a side or an element.
+pub struct Force {
+    /// The kind of load, and its node, or its element and side.
+    of: [usize; 3],
+    /// The nodes that it acts on; at least one.
+    pub nodes: Vec<usize>,
+    /// Where it acts.
+    pub at: Vector,
+    /// The force.
+    pub along: Vector,
+}
+
+/// The forces at the end of a step.
+fn forces(shape: &DeckShape, step: usize) -> Vec<Force> {
+    let deck = shape.deck;
+    let Some(step) = deck.steps.get(step) else {
+        return Vec::new();
+    };
+    let part = |amplitude: Option<usize>| match amplitude {
+        None => 1.0,
+        Some(_) => shape.factor(step, amplitude, step.time.period),
+    };
+    let mut all = Vec::new();
+    for force in &step.forces {
+        let along = axis(force.direction).map(|along| along * force.value * part(force.amplitude));
+        all.extend(along.map(|along| Force {
+            of: [0, force.node, 0],
+            nodes: vec![force.node],
+            at: shape.at(force.node),
+            along,
+        }));
+    }
+    for pressure in &step.pressures {
+        if let Some(face) = shape.face(pressure.element, pressure.side) {
+            let size = -pressure.value * face.area * part(pressure.amplitude);
+            let (corners, middles) = deck.face(pressure.element, pressure.side);
+            all.push(Force {
+                of: [1, pressure.element, pressure.side],
+                nodes: [corners, middles].concat(),
+                at: face.centre,
+                along: face.normal * size,
+            });
+        }
+    }
+    for weight in &step.weights {
+        let element = &deck.elements[weight.element];
+        let faces = (0..element.kind.cell.sides().len())
+            .filter_map(|side| shape.face(weight.element, side));
+        let faces: Vec<_> = faces.collect();
+        let Some(first) = faces.first() else {
+            continue;
+        };
+        let parts = faces
+            .iter()
+            .map(|face| face.area * (face.centre - first.centre).dot(&face.normal));
+        let volume = parts.sum::<f64>() / if deck.is_solid() { 3.0 } else { 2.0 };
+        let per_volume = match weight.load {
+            Volume::Force(force) => Vector::from(force),
+            Volume::Gravity(acceleration) => {
+                let material = shape.material(weight.element);
+                let density = material.and_then(|k| deck.materials[k].density);
+                Vector::from(acceleration) * density.unwrap_or(0.0)
+            }
+        };
+        all.push(Force {
+            of: [2, weight.element, 0],
+            nodes: element.nodes.clone(),
+            at: faces.iter().map(|face| face.centre).sum::<Vector>() / faces.len() as f64,
+            along: per_volume * volume * part(weight.amplitude),
+        });
+    }
+    all
+}
+
+/// Free motions in words: `along x, y and about z`.
+pub fn words(free: &[Motion]) -> String {
+    let all: SMatrix<f64, 6, 6> = free.iter().map(|motion| motion * motion.transpose()).sum();
+    let block = |from: usize| all.fixed_view::<3, 3>(from, from).into_owned();
+    // Translations that are free by themselves, and the axes of motions that turn.
+    let spaces = [
+        ("along", space(block(0), 1.0 - OUTSIDE)),
+        ("about", space(block(3), OUTSIDE)),
+    ];
+    let names = spaces.map(|(word, space)| (word, names(space)));
+    let names = names.iter().filter(|(_, names)| !names.is_empty());
+    let words: Vec<String> = names
+        .map(|(word, names)| format!("{word} {}", names.join(", ")))
+        .collect();
+    words.join(" and ")
+}
+
+/// Projection onto the eigenvectors with eigenvalues above a limit.
+fn space(of: Matrix3<f64>, least: f64) -> Matrix3<f64> {
+    let eigen = of.symmetric_eigen();
+    let values = eigen.eigenvalues.iter().enumerate();
+    let within = values.filter(|(_, value)| **value > least);
+    within
+        .map(|(k, _)| eigen.eigenvectors.column(k) * eigen.eigenvectors.column(k).transpose())
+        .sum()
+}
+
+/// The axes in a space, then directions that span the rest of it.
+fn names(mut space: Matrix3<f64>) -> Vec<String> {
+    let mut names = Vec::new();
+    for (k, name) in ["x", "y", "z"].into_iter().enumerate() {
+        if space[(k, k)] > 1.0 - OUTSIDE {
+            names.push(name.to_owned());
+            space[(k, k)] = 0.0;
+        }
+    }
+    let eigen = space.symmetric_eigen();
+    let values = eigen.eigenvalues.iter().enumerate();
+    let rest = values.filter(|(_, value)| **value > 0.5).map(|(k, _)| {
+        let along: Vector = eigen.eigenvectors.column(k).into_owned();
+        vector(along * along[along.iamax()].signum())
+    });
+    names.extend(rest);
+    names
+}
+
+/// The loads on a group at the end of a step, those of earlier steps included.
+fn total_forces(shape: &DeckShape, group: usize, step: usize) -> BTreeMap<[usize; 3], Force> {
+    let mut total = BTreeMap::new();
+    (0..=step).for_each(|step| add_forces(shape, group, step, &mut total));
+    total
+}
+
+/// Adds the forces of a step to those of the steps before.
+fn add_forces(
+    shape: &DeckShape,
+    group: usize,
+    number: usize,
+    total: &mut BTreeMap<[usize; 3], Force>,
+) {
+    let Some(step) = shape.deck.steps.get(number) else {
+        return;
+    };
+    total.retain(|of, _| match of[0] {
+        0 => !step.new_forces,
+        _ => !step.new_pressures,
+    });
+    let mut here: BTreeMap<[usize; 3], Force> = BTreeMap::new();
+    for force in forces(shape, number) {
+        if shape.group(force.nodes[0]) == Some(group) {
+            match here.entry(force.of) {
+                Entry::Occupied(mut known) => known.get_mut().along += force.along,
+                Entry::Vacant(entry) => {
+                    entry.insert(force);
+                }
+            }
+        }
+    }
+    for (of, force) in here {
+        // A step replaces the components that it gives.
+        match total.entry(of) {
+            Entry::Occupied(mut known) => (0..3)
+                .filter(|k| force.along[*k] != 0.0)
+                .for_each(|k| known.get_mut().along[k] = force.along[k]),
+            Entry::Vacant(entry) => {
+                entry.insert(force);
+            }
+        }
+    }
+}
+
+/// The pairs that touch a group, with their numbers.
+pub fn pairs_of<'s>(
+    shape: &'s DeckShape,
+    group: usize,
+) -> impl Iterator<Item = (usize, &'s PairShape)> {
+    let pairs = shape.pairs.iter().enumerate();
+    pairs.filter(move |(_, pair)| pair.groups.contains(&group))
+}
+
+/// Whether a pair holds in tension and shear, too.
+pub fn is_tied(shape: &DeckShape, pair: usize) -> bool {
+    let law = &shape.deck.interactions[shape.deck.pairs[pair].interaction];
+    matches!(law.normal, Normal::Tied { .. })
+}
