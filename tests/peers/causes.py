@@ -162,6 +162,9 @@ def main_cases():
     yield "reversed", "reversed faces", made, cure, deck(usual)
     made = deck([([LOAD], TIME), (["*CLOAD\nTOP, 1, 15."], TIME)], friction="0.1, 1e5")
     yield "friction", "load above friction", made, "0.39, 1e5", swap(made, "0.1, 1e5", "0.39, 1e5")
+    push, cure = "*CLOAD\nTOP, 1, 5.", "*BOUNDARY\nTOP, 1, 1, 0."
+    made = deck([([push], TIME)])
+    yield "unpressed", "load above friction", made, cure, swap(made, push, cure)
     made = deck([([LOAD], TIME)], gap=-0.05)
     cure = "*CONTACT PAIR, INTERACTION=RUB, TYPE=NODE TO SURFACE, ADJUST=0."
     yield "overlap", "overlap at the start", made, cure, swap(made, cure.replace(", ADJUST=0.", ""), cure)

@@ -131,12 +131,32 @@ pub fn beyond_friction(shape: &DeckShape) -> Vec<RunFinding> {
         let pressed = -rest.force.dot(&rest.normal);
         let along = rest.force + pressed * rest.normal;
         let limit = law.friction * pressed.max(0.0);
+        let is_small = LOADED * rest.force.norm();
         if law.friction == 0.0
             || along.norm() <= limit * (1.0 + 1e-6)
-            || pressed <= 0.0
+            || pressed < -is_small
             || !rest.is_free(along, None)
         {
             return None;
+        }
+        let name = shape.group_name(rest.motion.group);
+        let pushes = format!(
+            "step {} pushes {name} along {} with {}",
+            rest.step,
+            shape.pair_name(pair),
+            sig4(along.norm())
+        );
+        if pressed <= is_small {
+            let (set, axis) = (shape.set_name(&rest.motion.loaded()), along.iamax() + 1);
+            return Some(RunFinding {
+                rule: "load above friction",
+                cause: format!(
+                    "{pushes}, but no load presses it onto the contact, so friction holds nothing"
+                ),
+                cure: "a step before it that presses, or a displacement instead of the force"
+                    .into(),
+                lines: format!("*BOUNDARY\n{set}, {axis}, {axis}, 0."),
+            });
         }
         let needed = rounded_up(SPARE * along.norm() / pressed);
         let stick = law
@@ -146,11 +166,7 @@ pub fn beyond_friction(shape: &DeckShape) -> Vec<RunFinding> {
         Some(RunFinding {
             rule: "load above friction",
             cause: format!(
-                "step {} pushes {} along {} with {}, but friction holds at most {} x {} = {}: it slides away",
-                rest.step,
-                shape.group_name(rest.motion.group),
-                shape.pair_name(pair),
-                sig4(along.norm()),
+                "{pushes}, but friction holds at most {} x {} = {}: it slides away",
                 sig4(law.friction),
                 sig4(pressed),
                 sig4(limit)
