@@ -219,6 +219,9 @@ fn map_lines(map: &Map) -> Vec<String> {
             .to_owned(),
     );
     lines.extend(map.signs());
+    if map.cells.iter().any(Option::is_none) {
+        lines.push("? not run".to_owned());
+    }
     lines.extend(map.origin());
     lines
 }

@@ -2,7 +2,7 @@
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
-use ratatui::style::Style;
+use ratatui::style::{Modifier, Style};
 use std::ops::Range;
 
 /// A visible iteration and its screen column.
@@ -98,6 +98,8 @@ pub fn bracket(
     text: &str,
     style: Style,
 ) {
+    // Reversed, the bracket would be a bar.
+    let line = style.remove_modifier(Modifier::REVERSED);
     for x in from..=to {
         let stroke = match x {
             _ if from == to => "╵",
@@ -105,7 +107,7 @@ pub fn bracket(
             x if x == to => "╯",
             _ => "─",
         };
-        buffer.set_string(x, y, stroke, style);
+        buffer.set_string(x, y, stroke, line);
     }
     let room = right.saturating_sub(to + 2);
     if text.len() <= usize::from(room) {

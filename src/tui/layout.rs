@@ -133,6 +133,8 @@ pub struct Choice {
     pub panes: ShownPanes,
     /// Number of slave nodes that the table shows.
     pub slaves: usize,
+    /// Number of all slave nodes, which the timeline shows.
+    pub all: usize,
     /// Whether the scene has a shape to draw; otherwise the timeline replaces it.
     pub has_shape: bool,
     /// Rows that the lesson needs at the screen's width; 0 without a lesson.
@@ -377,7 +379,7 @@ fn decision_rows(both: u16) -> u16 {
 fn large(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
     let timeline = match body.height {
         0..ROOM_FOR_TIMELINE => 0,
-        _ => (choice.slaves.min(LONGEST_TIMELINE) as u16).max(1) + TIMELINE_FRAME,
+        _ => (choice.all.min(LONGEST_TIMELINE) as u16).max(1) + TIMELINE_FRAME,
     };
     let [body, timeline] = top(body, body.height - timeline);
     let [left, right] = left(body, (body.width * 11 / 20).clamp(104, 130));
@@ -416,6 +418,7 @@ mod tests {
         let choice = Choice {
             panes: ShownPanes::default(),
             slaves,
+            all: slaves,
             has_shape: true,
             lesson: 0,
         };

@@ -93,6 +93,7 @@ pub fn places(app: &App, view: Option<&View>, area: Rect) -> ScreenAreas {
             Filter::All => view.model.contacts.len(),
             _ => app.order(view).len(),
         }),
+        all: model.map_or(0, |model| model.contacts.len()),
         has_shape,
         lesson: rows,
     };

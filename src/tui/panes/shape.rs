@@ -482,7 +482,7 @@ fn motions(canvas: &mut Canvas, window: &Window, app: &App, view: &View) -> Vec<
     lines
 }
 
-/// The arrow head at the end of a line.
+/// The arrow head at the end of a line, or where the line leaves the picture.
 fn head(
     buffer: &mut Buffer,
     canvas: &Canvas,
@@ -491,8 +491,10 @@ fn head(
 ) {
     let (x, y) = (to[0] - from[0], from[1] - to[1]);
     let eighth = (y.atan2(x) / FRAC_PI_4).round().rem_euclid(8.0) as usize;
-    if let Some((x, y)) = canvas.cell(*to)
-        && let Some(cell) = buffer.cell_mut((x, y))
+    let last = canvas.size().map(|side| side - 1.0);
+    if let Some((_, end)) = outline::clip(*from, *to, [0.0; 2], last)
+        && let Some(at) = canvas.cell(end)
+        && let Some(cell) = buffer.cell_mut(at)
     {
         cell.set_symbol(heads[eighth % heads.len()])
             .set_style(style);
