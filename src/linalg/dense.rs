@@ -3,7 +3,9 @@
 use super::check::{SolveError, fill_probe, largest};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::lu::partial_pivoting::factor::{lu_in_place, lu_in_place_scratch};
-use faer::linalg::lu::partial_pivoting::solve::{solve_in_place, solve_in_place_scratch};
+use faer::linalg::lu::partial_pivoting::solve::{
+    solve_in_place, solve_in_place_scratch, solve_transpose_in_place,
+};
 use faer::linalg::matmul::matmul;
 use faer::perm::PermRef;
 use faer::{Accum, MatMut, MatRef, Par};
@@ -91,11 +93,31 @@ impl DenseFactors {
             }
         }
         self.apply_inverse(b);
-        if b.iter().all(|x| x.is_finite()) {
-            Ok(())
-        } else {
-            Err(SolveError::Singular)
+        finite(b)
+    }
+
+    /// Solves Aᵀ X = B in place.
+    ///
+    /// # Errors
+    /// [`SolveError::Singular`] if X is not finite.
+    pub fn solve_transposed(&mut self, b: &mut [f64]) -> Result<(), SolveError> {
+        let n = self.n;
+        let factors = MatRef::from_column_major_slice(&self.values, n, n);
+        let columns = b.len().checked_div(n).unwrap_or(0);
+        solve_transpose_in_place(
+            factors,
+            factors,
+            PermRef::new_checked(&self.perm, &self.perm_inverse, n),
+            MatMut::from_column_major_slice_mut(b, n, columns),
+            Par::Seq,
+            MemStack::new(&mut self.memory),
+        );
+        for column in b.chunks_exact_mut(n.max(1)) {
+            for (b, scale) in column.iter_mut().zip(&self.row_scale) {
+                *b *= scale;
+            }
         }
+        finite(b)
     }
 
     /// An estimate of the norm of the scaled inverse, as [`super::Factors::inverse_norm`] computes it.
@@ -120,6 +142,13 @@ impl DenseFactors {
             Par::Seq,
             MemStack::new(&mut self.memory),
         );
+    }
+}
+
+fn finite(x: &[f64]) -> Result<(), SolveError> {
+    match x.iter().all(|x| x.is_finite()) {
+        true => Ok(()),
+        false => Err(SolveError::Singular),
     }
 }
 
@@ -162,6 +191,14 @@ mod tests {
         assert!(dense.inverse_norm() < 1e6);
         assert!(
             (0..6).all(|k| (b[k] - exact[k % 3] * [1.0, -2.0][k / 3]).abs() < 1e-12),
+            "{b:?}"
+        );
+        let mut b: Vec<f64> = (0..3)
+            .map(|j| (0..3).map(|i| a[3 * j + i] * exact[i]).sum())
+            .collect();
+        dense.solve_transposed(&mut b).unwrap();
+        assert!(
+            b.iter().zip(exact).all(|(b, x)| (b - x).abs() < 1e-12),
             "{b:?}"
         );
         let singular = [1.0, 2.0, 3.0, 2.0, 4.0, 6.0, 0.0, 1.0, 1.0];

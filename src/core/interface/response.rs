@@ -63,6 +63,22 @@ impl InterfaceResponse {
         value - factor[0] * self.start[here] - factor[1] * self.start[here + 1]
     }
 
+    /// Derivatives of a slave node's ΔF_n, ΔF_t, normal and tangential relative motion with respect to z.
+    pub fn rows(&self, slave: usize) -> [Vec<f64>; 4] {
+        std::array::from_fn(|k| {
+            let row = 2 * slave + k % 2;
+            let force = self.response.iter().skip(row).step_by(self.count());
+            match k < 2 {
+                true => force.copied().collect(),
+                false => {
+                    let mut motion: Vec<f64> = force.map(|force| force / self.stiffness).collect();
+                    motion[row] += 1.0;
+                    motion
+                }
+            }
+        })
+    }
+
     /// ΔF_n, ΔF_t of a slave node, and its normal and tangential relative motion, for given z.
     pub fn answer(&self, z: &[f64], slave: usize, prescribed: [f64; 2]) -> [[f64; 2]; 2] {
         let [mut force, mut motion] = self.change(z, slave);

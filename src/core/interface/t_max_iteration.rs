@@ -206,17 +206,16 @@ fn map(trials: &mut Trials<'_>, round: &[Vec<ContactState>], places: &[usize]) -
     for nodes in round {
         let given = trials.solve_states(nodes)?;
         let mut once = vec![0.0; size * size];
-        for (j, &from) in places.iter().enumerate() {
-            if nodes[from].mode != Mode::Sliding {
-                continue;
-            }
-            let answers = trials.answers_to(from, 1)?;
-            for (i, &to) in places.iter().enumerate() {
-                let node = &trials.problem().nodes[to];
-                let f_n = nodes[to].f_n + given[to].force[0];
-                let sign = next_sign(&nodes[to], nodes[to].f_t + given[to].force[1]);
+        for (i, &to) in places.iter().enumerate() {
+            let [of_f_n, ..] = trials.answers_of(to)?;
+            let node = &trials.problem().nodes[to];
+            let f_n = nodes[to].f_n + given[to].force[0];
+            let sign = next_sign(&nodes[to], nodes[to].f_t + given[to].force[1]);
+            let sliding = places.iter().enumerate();
+            let sliding = sliding.filter(|(_, from)| nodes[**from].mode == Mode::Sliding);
+            for (j, &from) in sliding {
                 once[j * size + i] =
-                    sign * f_n.signum() * node.friction.coefficient() * answers[to].force[0];
+                    sign * f_n.signum() * node.friction.coefficient() * of_f_n[2 * from + 1];
             }
         }
         all = product(&once, &all, size);

@@ -101,18 +101,14 @@ impl<'a> Trials<'a> {
         })
     }
 
-    /// Derivative of the last solution with respect to the right-hand side of equation k (0 normal, 1 tangential) of a node: one
-    /// entry per node. `None` if it is not finite.
-    pub fn answers_to(&mut self, slave: usize, k: usize) -> Option<Vec<NodeIncrement>> {
-        self.z.fill(0.0);
-        self.z[2 * slave + k] = 1.0;
-        self.dense.solve(&mut self.z).ok()?;
-        let relation = &self.problem.relation;
-        let change = |s: usize| {
-            let [force, motion] = relation.change(&self.z, s);
-            NodeIncrement { force, motion }
-        };
-        Some((0..self.problem.nodes.len()).map(change).collect())
+    /// Derivatives of a node's F_n, F_t, normal and tangential motion in the last solution with respect to the right-hand sides of
+    /// all equations: two entries per node, normal and tangential. `None` if they are not finite.
+    pub fn answers_of(&mut self, slave: usize) -> Option<[Vec<f64>; 4]> {
+        let mut answers = self.problem.relation.rows(slave);
+        for row in &mut answers {
+            self.dense.solve_transposed(row).ok()?;
+        }
+        Some(answers)
     }
 
     fn solve(

@@ -52,6 +52,8 @@ pub(super) fn spread(
     mut missed: impl FnMut(usize, &Equation) -> f64,
 ) -> Option<Vec<Vec<Influence>>> {
     let problem = trials.problem();
+    let answers = targets.iter().map(|target| trials.answers_of(*target));
+    let answers: Vec<[Vec<f64>; 4]> = answers.collect::<Option<_>>()?;
     let mut found = vec![Vec::new(); targets.len()];
     for (from, node) in problem.nodes.iter().enumerate() {
         let rows = rows::rows(
@@ -61,27 +63,22 @@ pub(super) fn spread(
             &problem.settings,
             0.0,
         );
-        let none = Influence {
-            from,
-            ..Influence::default()
-        };
-        let mut on = vec![none; targets.len()];
-        for (k, row) in rows.iter().enumerate() {
-            let missed = missed(from, row);
-            if missed == 0.0 {
-                continue;
-            }
-            let changes = trials.answers_to(from, k)?;
-            for (influence, &target) in on.iter_mut().zip(targets) {
-                let change = changes[target];
-                influence.gap -= missed * change.motion[0];
-                influence.slip += missed * change.motion[1];
-                influence.f_n += missed * change.force[0];
-                influence.f_t += missed * change.force[1];
-            }
-        }
-        for (all, influence) in found.iter_mut().zip(on) {
-            all.push(influence);
+        let missed: Vec<f64> = rows.iter().map(|row| missed(from, row)).collect();
+        for (all, answers) in found.iter_mut().zip(&answers) {
+            let [f_n, f_t, gap, slip] = answers.each_ref().map(|of| {
+                let of = &of[2 * from..];
+                of.iter()
+                    .zip(&missed)
+                    .map(|(answer, missed)| answer * missed)
+                    .sum::<f64>()
+            });
+            all.push(Influence {
+                from,
+                gap: -gap,
+                slip,
+                f_n,
+                f_t,
+            });
         }
     }
     let tiny = f64::EPSILON * 64.0;

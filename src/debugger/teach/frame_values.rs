@@ -209,11 +209,11 @@ impl FrameValues {
                 .solve_states(&free.collect::<Vec<_>>())?
                 .get(at)?
                 .motion;
-            let along_n = trials.answers_to(at, 0)?.get(at)?.motion;
-            let along_t = trials.answers_to(at, 1)?.get(at)?.motion;
+            let [_, _, normal, tangential] = trials.answers_of(at)?;
+            let row = |of: Vec<f64>| [-of[2 * at], -of[2 * at + 1]];
             Some(CondensedNode {
                 free,
-                compliance: [[-along_n[0], -along_t[0]], [-along_n[1], -along_t[1]]],
+                compliance: [row(normal), row(tangential)],
             })
         };
         condensed().ok_or(LessonError::NotCondensed)
