@@ -9,18 +9,16 @@ use super::link::{Link, Start, name};
 use super::started_solver::{self, StartedSolver, meet};
 use std::sync::Arc;
 use std::sync::atomic::AtomicUsize;
-use stickslip_core::step::solver::Now;
-use stickslip_core::step::stored_states::StoredStates;
 use stickslip_core::words::counted;
 use stickslip_core::{
-    Capabilities, Intervention, Mode, Model, Position, ReportedProblem, Solver, SolverLost, State,
+    Capabilities, Intervention, Mode, Model, Now, Position, ReportedProblem, Solver, SolverLost,
+    State, StoredStates,
 };
 use stickslip_debugger::explain::names;
 use stickslip_debugger::recorded::decode::{self, RecordedStep, WireFrame};
-use stickslip_debugger::recorded::fault::Fault;
 use stickslip_debugger::recorded::interface_problem::read_problem;
-use stickslip_debugger::recorded::log::Log;
 use stickslip_debugger::recorded::orders::requests;
+use stickslip_debugger::{Fault, Log};
 use stickslip_exchange::attach::message::{self, ContactResult, EndedLevel, Hello, Id, Restore};
 use stickslip_exchange::attach::{Answer, Request};
 use stickslip_scene::Scene;

@@ -6,8 +6,7 @@ use super::wire;
 use serde_json::Value;
 use std::io::{self, BufRead, Write};
 use std::sync::Arc;
-use stickslip_core::step::solver::ReportedForm;
-use stickslip_core::{Intervention, State, Stepper};
+use stickslip_core::{Intervention, ReportedForm, State, Stepper};
 use stickslip_debugger::record::export::frozen;
 use stickslip_debugger::recorded::orders::{self, COHESION, FRICTION, INCREMENT};
 use stickslip_exchange::attach::message::{

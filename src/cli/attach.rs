@@ -7,8 +7,7 @@ use super::solver::SolverArgs;
 use std::path::PathBuf;
 use stickslip_attach::{C, FORTRAN, PYTHON, SCHEMA, check};
 use stickslip_core::words::counted;
-use stickslip_debugger::record::journal::JournalTarget;
-use stickslip_debugger::session::Session;
+use stickslip_debugger::{JournalTarget, Session};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {

@@ -6,12 +6,12 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::ExitCode;
 use stickslip_core::{Failure, RunEnd, Stepper, Until};
+use stickslip_debugger::SnapshotError;
 use stickslip_debugger::record::journal::JournalError;
-use stickslip_debugger::record::snapshot::SnapshotError;
 use stickslip_platform::files::{self, FileError};
-use stickslip_scene::format::SceneError;
+use stickslip_scene::builtin;
 use stickslip_scene::shown;
-use stickslip_scene::{Scene, builtin};
+use stickslip_scene::{Scene, SceneError};
 
 /// Exit codes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

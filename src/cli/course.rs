@@ -4,7 +4,8 @@ use super::base::{Error, usage};
 use super::interrupt::Interrupt;
 use std::ops::ControlFlow;
 use stickslip_core::{RunEnd, Stepper, Until};
-use stickslip_debugger::record::snapshot::{AppliedIntervention, Snapshot, SnapshotError};
+use stickslip_debugger::record::snapshot::AppliedIntervention;
+use stickslip_debugger::{Snapshot, SnapshotError};
 use stickslip_scene::{IN_SPACE, Scene};
 
 /// A scene, with the interventions and the number of steps of a snapshot.

@@ -5,9 +5,7 @@ use super::front;
 use super::groups;
 use std::io::IsTerminal;
 use std::path::PathBuf;
-use stickslip_debugger::record::journal::JournalTarget;
-use stickslip_debugger::recorded::recording::Recording;
-use stickslip_debugger::session::Session;
+use stickslip_debugger::{JournalTarget, Recording, Session};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {

@@ -2,8 +2,8 @@
 
 use super::base::{Error, Exit, say, scene_instead};
 use std::path::PathBuf;
+use stickslip_debugger::Snapshot;
 use stickslip_debugger::record::differences::compare;
-use stickslip_debugger::record::snapshot::Snapshot;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {

@@ -12,22 +12,21 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use stickslip_core::{Failure, Model, Position, RunEnd, Solver, State, Status, Stepper};
 use stickslip_debugger::explain::{failures, names, report};
-use stickslip_debugger::record::command::ExportScope;
 use stickslip_debugger::record::export::export_state::{ExportState, PicturePart, PictureRequest};
 use stickslip_debugger::record::export::run_history::RunHistory;
 use stickslip_debugger::record::export::skeleton::skeleton;
 use stickslip_debugger::record::export::{self, ExportKind, ExportSource, Origin};
 use stickslip_debugger::record::journal::Record;
-use stickslip_debugger::record::snapshot::Snapshot;
 use stickslip_debugger::recorded::calculix::{self as recorded, switches};
 use stickslip_debugger::session::exports::{self, Export};
+use stickslip_debugger::{ExportScope, Snapshot};
 use stickslip_exchange::fclib;
 use stickslip_exchange::vtu;
 use stickslip_platform::files::{self, Output};
 use stickslip_scene::calculix;
-use stickslip_scene::readers::FileKind;
 use stickslip_scene::solver::solver;
-use stickslip_scene::{Scene, import, shown};
+use stickslip_scene::{FileKind, Scene};
+use stickslip_scene::{import, shown};
 use stickslip_study::pen;
 
 #[derive(Debug, clap::Args)]

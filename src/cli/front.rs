@@ -1,10 +1,8 @@
 //! Entry points of the terminal debugger for the subcommands. A build without the feature `tui` uses `front/disabled.rs` instead.
 
 use super::base::Error;
-use stickslip_debugger::action::Colours;
-use stickslip_debugger::record::journal::{JournalTarget, Record};
-use stickslip_debugger::session::Session;
-use stickslip_debugger::teach::Lesson;
+use stickslip_debugger::record::journal::Record;
+use stickslip_debugger::{Colours, JournalTarget, Lesson, Session};
 use stickslip_tui as tui;
 
 pub use tui::main_screens::{MAIN_SCREENS, MainScreen, SIZES};

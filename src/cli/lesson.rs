@@ -8,10 +8,11 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use stickslip_core::words::counted;
+use stickslip_debugger::Lesson;
 use stickslip_debugger::teach::play::play;
 use stickslip_debugger::teach::progress::{self, Progress, ProgressError};
 use stickslip_debugger::teach::tutor::{Paragraph, paragraphs};
-use stickslip_debugger::teach::{self, Lesson, hand_in, lesson};
+use stickslip_debugger::teach::{self, hand_in, lesson};
 use stickslip_scene::shown;
 use unicode_width::UnicodeWidthStr;
 

@@ -5,7 +5,7 @@ use super::interrupt::Interrupt;
 use super::place::{RunPosition, notify_missed, seek};
 use super::solver::{Subject, SubjectArgs};
 use std::path::PathBuf;
-use stickslip_debugger::record::snapshot::Snapshot;
+use stickslip_debugger::Snapshot;
 use stickslip_platform::files::{self, Output};
 use stickslip_scene::Scene;
 

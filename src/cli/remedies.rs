@@ -6,17 +6,12 @@ use super::json::{self, JsonArgs};
 use super::records::{FailureKind, FailureRecord, RemediesRecord, RemedyRecord};
 use super::solver::{Subject, SubjectArgs, step_to_end};
 use stickslip_core::{Failure, RunEnd, Solver, State};
-use stickslip_debugger::explain::examination::Examination;
-use stickslip_debugger::explain::page::DiagnosisPage;
-use stickslip_debugger::explain::remedies::{
-    self, COLUMNS, RemainingViolations, RemedyTrial, TrialEnd,
-};
+use stickslip_debugger::explain::remedies::{self, COLUMNS, RemainingViolations, TrialEnd};
 use stickslip_debugger::explain::remedy::Remedy;
 use stickslip_debugger::explain::report;
-use stickslip_debugger::explain::walk::ReportedIterations;
 use stickslip_debugger::explain::{attached, failures, page};
 use stickslip_debugger::history::rounds::{self, CycleWatch};
-use stickslip_debugger::history::strip::Strip;
+use stickslip_debugger::{DiagnosisPage, Examination, RemedyTrial, ReportedIterations, Strip};
 use stickslip_scene::Scene;
 use stickslip_scene::shown::aligned;
 

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 use stickslip_core::words::counted;
 use stickslip_debugger::record::differences::{Difference, Differences, TOLERANCE, compare_within};
-use stickslip_debugger::record::snapshot::{Snapshot, SnapshotError};
+use stickslip_debugger::{Snapshot, SnapshotError};
 use stickslip_platform::files::finish_all;
 
 /// Maximum number of differences per snapshot in the record.

@@ -2,11 +2,11 @@
 
 use super::base::{Error, Exit, put};
 use std::path::PathBuf;
-use stickslip_debugger::recorded::recording::Recording;
+use stickslip_debugger::Recording;
 use stickslip_debugger::teach;
+use stickslip_scene::EmbeddedFile;
 use stickslip_scene::builtin;
 use stickslip_scene::embedded;
-use stickslip_scene::embedded::EmbeddedFile;
 use stickslip_scene::format::error::did_you_mean;
 use stickslip_study::{benchmarks, builtin as studies, chart_file};
 

@@ -11,8 +11,7 @@ use stickslip_attach::{Attached, Channel, Start};
 use stickslip_core::step::drive::drive;
 use stickslip_core::{RunEnd, Solver, Until};
 use stickslip_debugger::record::journal::Record;
-use stickslip_debugger::recorded::log::Log;
-use stickslip_debugger::session::Session;
+use stickslip_debugger::{Log, Session};
 use stickslip_scene::Scene;
 use stickslip_scene::solver::any_solver;
 

@@ -2,9 +2,9 @@
 
 use super::base::{Error, Exit, say};
 use std::path::PathBuf;
+use stickslip_debugger::Recording;
 use stickslip_debugger::record::journal::{self, Record};
 use stickslip_debugger::record::story::story;
-use stickslip_debugger::recorded::recording::Recording;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {

@@ -6,11 +6,11 @@ use super::records::{FallbackRecord, MonitorRecord, SlaveRecord, StabilityRecord
 use super::run_outputs::{RunOutputs, first_closed, send};
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
-use stickslip_core::linear::stability::Stability;
-use stickslip_core::step::event::MotionEvent;
-use stickslip_core::step::recovery::fallback::Fallback;
 use stickslip_core::words::counted;
-use stickslip_core::{ContactRecord, Event, Norms, Outcome, Solver};
+use stickslip_core::{
+    ContactRecord, Event, Fallback, MotionEvent, Norms, Outcome, Solver, Stability,
+};
+use stickslip_debugger::Strip;
 use stickslip_debugger::explain::accuracy;
 use stickslip_debugger::explain::bond;
 use stickslip_debugger::explain::limit_load::body_without_friction;
@@ -18,7 +18,6 @@ use stickslip_debugger::explain::names;
 use stickslip_debugger::explain::report;
 use stickslip_debugger::explain::touch::TouchWatch;
 use stickslip_debugger::history::rounds::{self, CycleWatch};
-use stickslip_debugger::history::strip::Strip;
 use stickslip_debugger::record::table;
 use stickslip_scene::Scene;
 use stickslip_scene::number::{shortest, sig6};

@@ -1,10 +1,11 @@
 //! Builds a [`Model`] in code, without a scene file.
 
 use crate::model::{
-    Body, BodyKind, Component, Contact, Dofs, Factor, Load, Model, Monitor, Node, Prescribed,
-    Settings, Surface, diagonal,
+    Body, BodyKind, Component, Contact, Dofs, Factor, Load, Monitor, Node, Prescribed, Surface,
+    diagonal,
 };
 use crate::words::counted;
+use crate::{Model, Settings};
 use std::collections::BTreeSet;
 
 /// A [`Model`] in the making: the methods that add something return its number.

@@ -1,4 +1,6 @@
-//! Vectors in the plane.
+//! Vectors in the plane, and the size of vectors of any length.
+
+use std::borrow::Borrow;
 
 /// a − b.
 pub fn minus(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
@@ -24,4 +26,15 @@ pub fn length(v: [f64; 2]) -> f64 {
 pub fn unit(v: [f64; 2]) -> Option<[f64; 2]> {
     let length = length(v);
     (length > 0.0).then(|| v.map(|x| x / length))
+}
+
+/// The largest magnitude of some numbers; 0 for none.
+pub fn max_abs(values: impl IntoIterator<Item: Borrow<f64>>) -> f64 {
+    let values = values.into_iter();
+    values.fold(0.0, |most: f64, x| most.max(x.borrow().abs()))
+}
+
+/// The distance of two points.
+pub fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
 }

@@ -37,3 +37,5 @@ pub mod siconos;
 pub mod vtu;
 pub mod vtu_reader;
 pub mod words;
+
+pub use format_error::FormatError;

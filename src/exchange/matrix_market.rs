@@ -10,8 +10,8 @@
 //! A symmetric matrix is stored by its lower half, a skew-symmetric one by the part below the diagonal. Case and additional words
 //! in the first line do not matter. Patterns, which have no values, and complex matrices are rejected.
 
+use crate::FormatError;
 use crate::bail;
-use crate::format_error::FormatError;
 use crate::problem::{Matrix, is_there};
 use crate::words::{Words, quoted};
 use std::fmt::Write;
@@ -43,7 +43,7 @@ pub fn read(text: &str) -> Result<Matrix, FormatError> {
             "a matrix with {rows} rows and {columns} columns cannot be symmetric or skew-symmetric"
         );
     }
-    let mut read = MatrixReader {
+    let mut read = MatrixBuilder {
         matrix: Matrix {
             rows,
             columns,
@@ -124,12 +124,12 @@ fn without_comments(text: &str) -> String {
     lines.collect()
 }
 
-struct MatrixReader {
+struct MatrixBuilder {
     matrix: Matrix,
     symmetry: Symmetry,
 }
 
-impl MatrixReader {
+impl MatrixBuilder {
     fn coordinates(&mut self, words: &mut Words<'_>) -> Result<(), FormatError> {
         for _ in 0..words.count("the number of entries")? {
             let mut index = |most: usize, what: &str| {
@@ -184,15 +184,8 @@ impl MatrixReader {
 /// The file of a matrix from its entries; duplicate entries are added. Numbers are written with enough digits to be read back
 /// exactly. Comments follow the first line.
 pub fn write(matrix: &Matrix, comments: &[&str]) -> String {
-    let mut entries = matrix.entries.clone();
+    let mut entries = matrix.clone().merged().entries;
     entries.sort_by_key(|&(row, column, _)| (column, row));
-    entries.dedup_by(|next, kept| {
-        let same = (next.0, next.1) == (kept.0, kept.1);
-        if same {
-            kept.2 += next.2;
-        }
-        same
-    });
     let mut text = head("coordinate", comments);
     let _ = writeln!(text, "{} {} {}", matrix.rows, matrix.columns, entries.len());
     for (row, column, value) in entries {

@@ -17,8 +17,8 @@
 //! A global problem is recognised by the size of its first matrix; if M has the same size as W would, by the three whole numbers
 //! at the start of H and by more words than a local problem would have left. Trailing text in the file is ignored.
 
+use crate::FormatError;
 use crate::bail;
-use crate::format_error::FormatError;
 use crate::problem::{Global, Local, Matrix, Problem, is_there};
 use crate::words::Words;
 use std::fmt::{Debug, Write};

@@ -1,7 +1,7 @@
 //! Splits a text into words and tracks their positions.
 
+use crate::FormatError;
 use crate::bail;
-use crate::format_error::FormatError;
 
 /// Maximum number of characters of a word in a message.
 const SHOWN: usize = 40;

@@ -8,8 +8,8 @@
 pub mod render;
 pub mod search;
 
+use stickslip_scene::EmbeddedFile;
 use stickslip_scene::embedded;
-use stickslip_scene::embedded::EmbeddedFile;
 use stickslip_scene::format::error::did_you_mean;
 
 /// A page of the manual.

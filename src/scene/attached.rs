@@ -6,16 +6,17 @@
 
 use super::limits;
 use super::nodes::Names;
+use crate::Spec;
 use crate::format::contact_law::FrictionSpec;
 use crate::format::error::{Fault, at, fault};
-use crate::format::spec::{History, Spec};
+use crate::format::spec::History;
 use crate::shown;
 use std::collections::{HashMap, HashSet};
-use stickslip_core::Model;
 use stickslip_core::model::{
-    Body, BodyKind, Bond, Contact, Control, Form, Friction, Jumps, Linear, Monitor,
-    MonitorQuantity, Node, ReportedKind, Surface,
+    Body, BodyKind, Bond, Contact, Control, Form, Jumps, Linear, Monitor, MonitorQuantity, Node,
+    ReportedKind, Surface,
 };
+use stickslip_core::{Friction, Model};
 use stickslip_exchange::attach::Answer;
 use stickslip_exchange::attach::message::{self, Scene};
 

@@ -7,8 +7,9 @@
 
 use super::Scene;
 use super::compile::{Choices, Compiled, Groups, Loads, compile, renewed};
+use crate::Spec;
 use crate::format::error::at;
-use crate::format::{Spec, paths};
+use crate::format::paths;
 use stickslip_core::Model;
 
 /// A scene as written by its author, with data for changing it.

@@ -1,7 +1,7 @@
 //! The built-in scenes.
 
+use crate::EmbeddedFile;
 use crate::embedded;
-use crate::embedded::EmbeddedFile;
 
 /// A scene by its name and its folder below `problems`.
 macro_rules! scenes {

@@ -1,12 +1,12 @@
 //! Reads a finished CalculiX run: its .cel file and the files next to it.
 
+use crate::SceneError;
 pub use crate::deck::outline;
-use crate::format::SceneError;
 use std::io::{self, BufReader};
 use std::path::{Path, PathBuf};
+use stickslip_exchange::FormatError;
 use stickslip_exchange::calculix::files::CalculixFiles;
 use stickslip_exchange::calculix::{cel, cvg, frd, sta};
-use stickslip_exchange::format_error::FormatError;
 use stickslip_exchange::inp::Deck;
 use stickslip_platform::disk::{File, OpenOptions};
 use stickslip_platform::input::{self, Unreadable};

@@ -6,12 +6,12 @@ use super::{gaps, limits};
 use crate::format::error::some_of;
 use crate::number::sig6;
 use std::fmt;
-use stickslip_core::linear::estimate::Estimate;
 use stickslip_core::model::{
     Beam, Body, BodyKind, Elastic, ElementKind, Form, Linear, LinearSolver, Solid, Surface, Update,
 };
+use stickslip_core::words;
 use stickslip_core::words::is_default;
-use stickslip_core::{Model, words};
+use stickslip_core::{Estimate, Model};
 
 /// Size and cost of a scene. Displayed as a table, so that users can check whether the scene is what they meant.
 #[derive(Debug, Clone, PartialEq)]

@@ -6,13 +6,12 @@ use crate::number::sig4;
 use crate::pressed;
 use std::cell::LazyCell;
 use std::collections::HashSet;
-use stickslip_core::Model;
-use stickslip_core::contact::element::SurfaceElement;
 use stickslip_core::contact::facing::{MOST as MOST_SURFACES, faced};
-use stickslip_core::contact::projection::{SurfacePoint, project, projection_at};
+use stickslip_core::contact::projection::{project, projection_at};
 use stickslip_core::fem::lagrange;
 use stickslip_core::model::{Body, BodyKind, Contact, InitialGaps, Node, Surface};
 use stickslip_core::plane::dot;
+use stickslip_core::{Model, SurfaceElement, SurfacePoint};
 
 /// Gaps below this fraction of the scene's length count as zero.
 const NONE: f64 = 1e-9;

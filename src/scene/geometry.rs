@@ -4,7 +4,7 @@ use super::limits;
 use crate::format::error::{Fault, Path, bail};
 use stickslip_core::fem::continuum;
 use stickslip_core::model::{ElementKind, Node};
-use stickslip_core::plane::{cross, dot, minus};
+use stickslip_core::plane::{cross, distance, dot, minus};
 
 /// Rejects chains with an element whose nodes coincide or whose curve folds back or has zero velocity.
 ///
@@ -142,11 +142,6 @@ impl Folds {
         let greatest = self.0.iter().map(jacobian).fold(0.0, f64::max);
         !self.0.iter().map(jacobian).all(|j| j > SMALLEST * greatest)
     }
-}
-
-/// Distance of two points.
-pub(crate) fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
-    (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
 /// Distance of a point from the polygon through the nodes of elements. The search stops at any distance up to `enough`, because

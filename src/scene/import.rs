@@ -8,8 +8,9 @@
 use super::limits;
 use crate::format::error::{Fault, Path, at, fault, quoted, some_of};
 use crate::format::given::{Cells, NodeSet, SideSet};
+use crate::format::read;
 use crate::format::spec::Nodes;
-use crate::format::{SceneError, Spec, read};
+use crate::{SceneError, Spec};
 use std::collections::HashMap;
 use stickslip_core::model::ElementKind;
 use stickslip_exchange::gmsh;

@@ -47,6 +47,8 @@ mod geometry;
 mod pressed;
 
 pub use compile::increments;
+pub use embedded::EmbeddedFile;
+pub use format::{SceneError, Spec};
 pub use problems::siconos;
-pub use readers::IN_SPACE;
+pub use readers::{FileKind, IN_SPACE};
 pub use scene::Scene;

@@ -2,8 +2,9 @@
 
 use crate::compile::compile;
 use crate::format::paths::Override;
-use crate::format::{Fault, SceneError, Spec, error, locate, paths};
+use crate::format::{Fault, error, locate, paths};
 use crate::nodes::Names;
+use crate::{SceneError, Spec};
 use crate::{attached, import};
 use stickslip_core::Model;
 use stickslip_exchange::attach::message;

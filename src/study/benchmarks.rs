@@ -33,10 +33,9 @@ use std::num::NonZeroUsize;
 use std::path::Path;
 use std::sync::Arc;
 use stickslip_scene::embedded;
-use stickslip_scene::embedded::EmbeddedFile;
-use stickslip_scene::format::error::{SceneError, did_you_mean};
+use stickslip_scene::format::error::did_you_mean;
 use stickslip_scene::format::read::{text as file_text, value as from_ron};
-use stickslip_scene::{Scene, increments};
+use stickslip_scene::{EmbeddedFile, Scene, SceneError, increments};
 
 /// Name of the built-in list.
 pub const BUILTIN: &str = "benchmarks";

@@ -1,6 +1,7 @@
 //! The built-in studies.
 
-use stickslip_scene::embedded::{self, EmbeddedFile};
+use stickslip_scene::EmbeddedFile;
+use stickslip_scene::embedded;
 use stickslip_scene::embedded_all;
 
 /// In the order in which they are listed.

@@ -18,10 +18,9 @@ use super::read::{Vary, pairs, parse};
 use super::reference::Reference;
 use serde::Deserialize;
 use std::path::PathBuf;
-use stickslip_scene::embedded::EmbeddedFile;
+use stickslip_scene::builtin;
 use stickslip_scene::embedded_all;
-use stickslip_scene::format::error::SceneError;
-use stickslip_scene::{Scene, builtin};
+use stickslip_scene::{EmbeddedFile, Scene, SceneError};
 
 /// A chart before it is measured.
 #[derive(Debug, Clone, PartialEq)]

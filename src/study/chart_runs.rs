@@ -16,10 +16,10 @@ use super::sweep::{RunError, Sweep};
 use super::sweep_input::Input;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
-use stickslip_core::model::Model;
+use stickslip_core::Model;
+use stickslip_core::plane::max_abs;
 use stickslip_platform::system;
-use stickslip_scene::format::SceneError;
-use stickslip_scene::increments;
+use stickslip_scene::{SceneError, increments};
 
 /// Runs that take this long in total (seconds) are not repeated again.
 const LONG: f64 = 20.0;
@@ -216,7 +216,7 @@ fn table(chart: &Chart, path: &[f64]) -> Result<Option<Reference>, PrecisionErro
 }
 
 fn is_same(path: &[f64], a: f64, b: f64) -> bool {
-    let size = path.iter().fold(0.0, |m: f64, load| m.max(load.abs()));
+    let size = max_abs(path);
     (a - b).abs() <= SAME_LOAD * size
 }
 

@@ -21,9 +21,10 @@ use std::sync::Mutex;
 use stickslip_exchange::seal::{Seal, opened as unsealed, sealed};
 use stickslip_platform::disk::{File, OpenOptions};
 use stickslip_platform::input::{self, Unreadable};
+use stickslip_scene::FileKind;
 use stickslip_scene::format::notation;
 use stickslip_scene::format::read::plainly;
-use stickslip_scene::readers::{FileKind, mistaken};
+use stickslip_scene::readers::mistaken;
 
 /// Why results cannot be stored or read.
 #[derive(Debug, thiserror::Error)]

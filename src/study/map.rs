@@ -20,7 +20,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::{BTreeSet, HashMap};
 use std::fmt::Write;
 use std::sync::Arc;
-use stickslip_core::model::Model;
+use stickslip_core::Model;
 
 /// Default tolerance: runs whose ends differ by more than this fraction of the largest value are on different
 /// branches.

@@ -6,8 +6,7 @@
 
 use std::collections::HashMap;
 use std::sync::{Condvar, Mutex, MutexGuard};
-use stickslip_core::linear::estimate::Estimate;
-use stickslip_core::model::Model;
+use stickslip_core::{Estimate, Model};
 use stickslip_scene::memory;
 
 /// Memory in use, and the number of runs.

@@ -1,7 +1,8 @@
 //! Kinds of monitors: those of one kind share a unit and a scale, and can be compared.
 
 use serde::{Deserialize, Serialize};
-use stickslip_core::model::{Model, MonitorQuantity, ReportedKind};
+use stickslip_core::Model;
+use stickslip_core::model::{MonitorQuantity, ReportedKind};
 
 /// Kind of a monitor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]

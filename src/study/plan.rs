@@ -5,11 +5,11 @@ use super::shard::Key;
 use super::sweep::Cell;
 use super::sweep_input::digest;
 use std::sync::Arc;
-use stickslip_core::model::Model;
+use stickslip_core::Model;
 use stickslip_scene::base::{Base, ScalarLocation};
-use stickslip_scene::format::error::{SceneError, did_you_mean, some_of};
+use stickslip_scene::format::error::{did_you_mean, some_of};
 use stickslip_scene::format::paths::{self, ListedScalar};
-use stickslip_scene::{Scene, increments};
+use stickslip_scene::{Scene, SceneError, increments};
 
 /// Maximum number of cells of a sweep.
 pub const MOST_CASES: u64 = 10_000_000;

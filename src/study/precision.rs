@@ -20,7 +20,7 @@ use super::solver_pool::Watch;
 use super::sweep::RunError;
 use std::collections::HashMap;
 use std::num::NonZeroUsize;
-use stickslip_core::model::Model;
+use stickslip_core::Model;
 use stickslip_core::words::counted;
 use stickslip_scene::number;
 

@@ -17,7 +17,7 @@ use rand_pcg::Pcg64;
 use rand_pcg::rand_core::Rng;
 use std::fmt::Write;
 use std::ops::RangeInclusive;
-use stickslip_core::model::{Friction, Mode, Settings};
+use stickslip_core::{Friction, Mode, Settings};
 use stickslip_scene::format::condensed::{Contact, HEAD, Matrix, Problem};
 
 /// The default range of the number of nodes.

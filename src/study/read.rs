@@ -19,12 +19,12 @@ use ron::error::SpannedError;
 use serde::Deserialize;
 use serde::de::{DeserializeOwned, Deserializer, Visitor};
 use std::fmt;
-use stickslip_scene::Scene;
-use stickslip_scene::format::error::{Path, SceneError, Step, did_you_mean, quoted};
+use stickslip_scene::format::error::{Path, Step, did_you_mean, quoted};
 use stickslip_scene::format::locate::{locate, too_deep};
 use stickslip_scene::format::notation;
 use stickslip_scene::format::read::{path_of, plainly, shallow, text};
-use stickslip_scene::readers::{FileKind, or_mistaken};
+use stickslip_scene::readers::or_mistaken;
+use stickslip_scene::{FileKind, Scene, SceneError};
 
 /// A study, before its scenes are checked.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
-use stickslip_core::step::event::Failure;
+use stickslip_core::Failure;
 
 stickslip_core::words! {
     /// Why an increment failed, in a word.

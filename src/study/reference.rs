@@ -7,8 +7,9 @@
 use super::csv::{Table, TableError};
 use super::result::Run;
 use std::path::Path;
+use stickslip_core::plane::max_abs;
 use stickslip_platform::input::{self, TABLE_BYTES};
-use stickslip_scene::embedded::EmbeddedFile;
+use stickslip_scene::EmbeddedFile;
 use stickslip_scene::embedded_all;
 use stickslip_scene::format::error::{quoted, shortened};
 
@@ -172,10 +173,7 @@ impl<'a> Legs<'a> {
 
     fn of(&mut self, load: f64) -> usize {
         let here = self.leg;
-        let size = self
-            .path
-            .iter()
-            .fold(0.0, |m: f64, corner| m.max(corner.abs()));
+        let size = max_abs(self.path);
         let ends = |corner: &f64| (load - corner).abs() <= SAME_LOAD * size;
         if self.path.get(here + 1).is_some_and(ends) && here + 2 < self.path.len() {
             self.leg += 1;

@@ -7,10 +7,7 @@ use super::verdict::RunVerdict;
 use std::convert::Infallible;
 use std::ops::ControlFlow;
 use std::sync::{Arc, Mutex};
-use stickslip_core::model::Model;
-use stickslip_core::step::drive::{RunEnd, Until};
-use stickslip_core::step::event::Outcome;
-use stickslip_core::step::stepper::Stepper;
+use stickslip_core::{Model, Outcome, RunEnd, Stepper, Until};
 
 /// Callbacks of a study, called from all threads.
 pub struct Watch<'a> {

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::num::{NonZeroU64, NonZeroUsize};
 use std::path::{Path, PathBuf};
-use stickslip_scene::format::SceneError;
+use stickslip_scene::SceneError;
 
 /// Scenes are parsed recursively; the stack of a main thread is sufficient for all valid ones.
 const STACK: usize = 8 << 20;

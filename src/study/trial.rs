@@ -21,13 +21,12 @@ use std::convert::Infallible;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use stickslip_core::interface::census::census;
-use stickslip_core::model::{Model, Settings};
-use stickslip_core::step::drive::{RunEnd, Until};
-use stickslip_core::step::stepper::Stepper;
+use stickslip_core::plane::max_abs;
+use stickslip_core::{Model, RunEnd, Settings, Stepper, Until};
 use stickslip_scene::base::{Base, Method};
 use stickslip_scene::format::condensed::{Matrix, Problem};
-use stickslip_scene::format::{SceneError, paths};
-use stickslip_scene::{Scene, increments};
+use stickslip_scene::format::paths;
+use stickslip_scene::{Scene, SceneError, increments};
 
 /// A run whose end violates a condition by more than this, relatively, is not a solution. This is far above the
 /// solver's errors (its tolerance is 1e-11) and far below the violations of wrong states.
@@ -247,7 +246,7 @@ fn violation(problem: &Problem, stepper: &Stepper) -> f64 {
 fn broken(problem: &Problem, u: &[f64], f: &[f64]) -> f64 {
     let free = |i: usize| problem.free.get(i).copied().unwrap_or(0.0);
     let acts = |i: usize| problem.contacts[i / 2].load[i % 2] + f[i];
-    let size = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, |m: f64, v| m.max(v.abs()));
+    let size = |values: &mut dyn Iterator<Item = f64>| max_abs(values);
     let all = || 0..u.len();
     let stiff = matches!(problem.matrix, Matrix::Stiffness(_));
     let of = |j: usize| if stiff { u[j] - free(j) } else { acts(j) };

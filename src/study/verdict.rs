@@ -3,8 +3,7 @@
 use super::reason::Reason;
 use serde::{Deserialize, Serialize};
 use std::fmt;
-use stickslip_core::interface::method::NotFound;
-use stickslip_core::step::event::Failure;
+use stickslip_core::{Failure, NotFound};
 
 /// Verdict on a run. Displays show its letter first and its colour second.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]

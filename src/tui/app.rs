@@ -19,12 +19,9 @@ use crate::view::{View, context};
 use ratatui::layout::Rect;
 use std::fmt;
 use std::time::Duration;
-use stickslip_debugger::action::{
-    Action, ChartOf, Colours, Context, Filter, Keymap, ParseError, Sort, Ui,
-};
+use stickslip_debugger::action::{Action, ChartOf, Context, Filter, Keymap, ParseError, Sort, Ui};
 use stickslip_debugger::explain::facts::Part;
-use stickslip_debugger::record::command::Command;
-use stickslip_debugger::teach::Tutor;
+use stickslip_debugger::{Colours, Command, Tutor};
 use stickslip_scene::shown;
 
 /// Rows that PageUp and PageDown move by.

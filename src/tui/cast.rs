@@ -11,10 +11,10 @@ use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::Rect;
 use ratatui::style::{Color, Modifier};
 use std::fmt::Write;
-use stickslip_core::model::Model;
+use stickslip_core::Model;
+use stickslip_debugger::Session;
 use stickslip_debugger::record::journal::{Entry, JournalError, Record};
 use stickslip_debugger::record::story;
-use stickslip_debugger::session::Session;
 use stickslip_scene::shown;
 
 /// Columns and rows, if none are given.

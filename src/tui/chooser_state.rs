@@ -4,15 +4,13 @@ use crate::view::View;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
-use stickslip_core::model::Model;
-use stickslip_core::step::stepper::Stepper;
-use stickslip_debugger::history::frame::Frame;
+use stickslip_core::{Model, Stepper};
+use stickslip_debugger::teach;
 use stickslip_debugger::teach::progress::{LessonProgress, Progress};
-use stickslip_debugger::teach::{self, Lesson};
+use stickslip_debugger::{Frame, Lesson};
 use stickslip_platform::{disk, task};
-use stickslip_scene::embedded::EmbeddedFile;
-use stickslip_scene::format::SceneError;
-use stickslip_scene::{Scene, builtin};
+use stickslip_scene::builtin;
+use stickslip_scene::{EmbeddedFile, Scene, SceneError};
 
 /// Maximum number of files listed from a folder, and of folder entries examined.
 const MOST: usize = 200;

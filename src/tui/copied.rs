@@ -3,7 +3,7 @@
 use crate::app::App;
 use crate::view::View;
 use stickslip_debugger::explain::names;
-use stickslip_debugger::history::watches::{Watch, WatchQuantity};
+use stickslip_debugger::{Watch, WatchQuantity};
 
 /// A name for the message, and the copied text.
 pub type NamedText = (String, String);

@@ -2,10 +2,11 @@
 //! continues only after all of its text has been shown.
 
 use crate::view::View;
+use stickslip_debugger::Tutor;
 use stickslip_debugger::action::{Action, HiddenDecisions};
 use stickslip_debugger::recorded::calculix::words::{NO_MODES, READ_ONLY};
+use stickslip_debugger::teach::Guess;
 use stickslip_debugger::teach::refusal::LessonRefusal;
-use stickslip_debugger::teach::{Guess, Tutor};
 
 /// How far the current lesson page has been read.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]

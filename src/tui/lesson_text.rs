@@ -6,8 +6,8 @@ use crate::learning::VisibleLines;
 use crate::panes::lesson;
 use crate::screen;
 use crate::view::View;
+use stickslip_debugger::Tutor;
 use stickslip_debugger::action::HiddenDecisions;
-use stickslip_debugger::teach::Tutor;
 use stickslip_debugger::teach::refusal::LessonRefusal;
 
 impl App {

@@ -6,12 +6,10 @@ use crate::panes::diagnosis::choices;
 use crate::screen;
 use crate::view::View;
 use stickslip_debugger::action::{Page, Step};
-use stickslip_debugger::explain::page::DiagnosisPage;
-use stickslip_debugger::explain::remedies::RemedyTrial;
 use stickslip_debugger::explain::remedy::RemedyInput;
 use stickslip_debugger::explain::try_list::TryOutcome;
 use stickslip_debugger::history::verdicts::{self, summaries};
-use stickslip_debugger::record::command::{BranchTarget, Command};
+use stickslip_debugger::{BranchTarget, Command, DiagnosisPage, RemedyTrial};
 
 impl App {
     /// Shows the curve of a monitor, or of the next one, also if the pane was hidden.

@@ -4,11 +4,11 @@ use crate::chartpage::{ChartPage, NoPage};
 use std::path::Path;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use stickslip_debugger::record::journal::{Journal, JournalError, Record};
-use stickslip_debugger::session::Session;
 use stickslip_debugger::teach::progress::ProgressStore;
-use stickslip_debugger::teach::{Lesson, Tutor, lesson, play};
+use stickslip_debugger::teach::{lesson, play};
+use stickslip_debugger::{Lesson, Session, Tutor};
 use stickslip_platform::task;
-use stickslip_scene::readers::FileKind;
+use stickslip_scene::FileKind;
 
 /// A loaded file, or why it cannot be loaded.
 pub enum LoadedFile {

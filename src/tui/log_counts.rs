@@ -1,7 +1,7 @@
 //! Counts the warnings and errors in an attached solver's log, and announces the last new one once.
 
 use stickslip_core::words::counted;
-use stickslip_debugger::recorded::log::Log;
+use stickslip_debugger::Log;
 use stickslip_debugger::recorded::log::LogOrigin;
 use stickslip_exchange::attach::message::Level;
 

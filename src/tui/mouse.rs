@@ -8,8 +8,8 @@ use crate::panes::{branches, nodes, remedies, shape, timeline};
 use crate::screen;
 use crate::view::View;
 use ratatui::layout::{Position, Rect};
+use stickslip_debugger::Command;
 use stickslip_debugger::action::{Action, Step, Ui};
-use stickslip_debugger::record::command::Command;
 
 /// Lines per turn of the wheel in a page of text.
 const LINES: usize = 3;

@@ -2,8 +2,7 @@
 
 use crate::app::App;
 use crate::view::View;
-use stickslip_core::contact::table2::Rule;
-use stickslip_core::model::Mode;
+use stickslip_core::{Mode, Rule};
 use stickslip_debugger::action::{Filter, Sort};
 use stickslip_debugger::explain::tested::Dimension;
 use stickslip_debugger::history::frame;

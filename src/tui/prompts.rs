@@ -10,11 +10,10 @@ use crate::scroll::scrolled;
 use crate::theme;
 use crate::view::{View, context};
 use ratatui::layout::Margin;
-use stickslip_core::model::Mode;
+use stickslip_core::Mode;
 use stickslip_debugger::action::{self, Action, Context, Question};
-use stickslip_debugger::record::command::Command;
-use stickslip_debugger::teach::Tutor;
 use stickslip_debugger::teach::question::AnswerKind;
+use stickslip_debugger::{Command, Tutor};
 
 impl App {
     pub(super) fn ask(&mut self, question: Question, view: Option<&View>) {

@@ -9,15 +9,12 @@ use crate::theme::{Theme, wants_no_colour};
 use crossterm::event::{self, Event};
 use std::io::{self, IsTerminal, Write};
 use std::time::{Duration, Instant};
-use stickslip_debugger::action::Colours;
 use stickslip_debugger::action::config::{Config, Dots};
-use stickslip_debugger::record::journal::{JournalError, JournalTarget};
-use stickslip_debugger::session::Session;
-use stickslip_debugger::teach::Lesson;
+use stickslip_debugger::record::journal::JournalError;
+use stickslip_debugger::{Colours, JournalTarget, Lesson, Session};
 use stickslip_platform::signals::{self, Signals};
-use stickslip_scene::Scene;
-use stickslip_scene::format::SceneError;
 use stickslip_scene::shown;
+use stickslip_scene::{Scene, SceneError};
 
 /// Why the debugger could not start, or stopped.
 #[derive(Debug, thiserror::Error)]

@@ -8,7 +8,8 @@ use crate::window::Window;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Modifier;
-use stickslip_core::model::{FinishedRun, Mode};
+use stickslip_core::Mode;
+use stickslip_core::model::FinishedRun;
 use stickslip_debugger::explain::outline::{Bounds, Point};
 
 /// Draws the surfaces, or why there are none.

@@ -21,8 +21,8 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 use ratatui::widgets::Widget;
+use stickslip_debugger::Session;
 use stickslip_debugger::action::Filter;
-use stickslip_debugger::session::Session;
 use stickslip_scene::shown;
 
 /// The area that a page over the panes covers.

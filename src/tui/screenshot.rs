@@ -6,7 +6,7 @@ use crate::theme::terminal_number;
 use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::Rect;
 use ratatui::style::{Color, Modifier};
-use stickslip_debugger::action::Colours;
+use stickslip_debugger::Colours;
 use stickslip_study::drawn::{Colour, Face, PlotError, Shape, TextLine};
 use stickslip_study::pen;
 

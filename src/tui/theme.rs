@@ -6,8 +6,8 @@
 //! and success.
 
 use ratatui::style::{Color, Modifier, Style};
-use stickslip_core::model::Mode;
-use stickslip_debugger::action::Colours;
+use stickslip_core::Mode;
+use stickslip_debugger::Colours;
 
 /// The 16 colours of a terminal, in the order of their numbers.
 const TERMINAL: [Color; 16] = [

@@ -1,27 +1,19 @@
 //! The data that the panes draw: a read-only view of a session.
 
 use std::borrow::Cow;
-use stickslip_core::contact::record::{ContactRecord, Forced};
-use stickslip_core::fem::deformation::PointDeformation;
-use stickslip_core::linear::norms::Norms;
-use stickslip_core::model::{Mode, Model, Monitor, MonitorQuantity};
-use stickslip_core::step::event::{Event, Outcome, Position};
-use stickslip_core::step::intervene::Intervention;
-use stickslip_core::step::solver::Capabilities;
+use stickslip_core::model::{Monitor, MonitorQuantity};
+use stickslip_core::{
+    Capabilities, ContactRecord, Event, Forced, Intervention, Mode, Model, Norms, Outcome,
+    PointDeformation, Position,
+};
 use stickslip_debugger::action::Context;
-use stickslip_debugger::explain::influence::NodePush;
 use stickslip_debugger::explain::model_facts::ModelFacts;
 use stickslip_debugger::explain::outline::{self, Projection};
-use stickslip_debugger::explain::page::DiagnosisPage;
-use stickslip_debugger::explain::remedies::RemedyTrial;
-use stickslip_debugger::explain::round_off::RoundOff;
-use stickslip_debugger::history::frame::Frame;
-use stickslip_debugger::history::strip::Strip;
-use stickslip_debugger::history::tree::Tree;
-use stickslip_debugger::recorded::log::Log;
-use stickslip_debugger::session::Session;
 use stickslip_debugger::session::background::Background;
 use stickslip_debugger::teach;
+use stickslip_debugger::{
+    DiagnosisPage, Frame, Log, NodePush, RemedyTrial, RoundOff, Session, Strip, Tree,
+};
 use stickslip_scene::Scene;
 use stickslip_scene::{number, shown};
 

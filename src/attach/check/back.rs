@@ -6,7 +6,7 @@ use super::trial::{Trial, at, is_last};
 use serde_json::Value;
 use stickslip_core::Mode;
 use stickslip_core::words::counted;
-use stickslip_debugger::recorded::fault::Fault;
+use stickslip_debugger::Fault;
 use stickslip_exchange::attach::message::{EndedLevel, Restore, State};
 
 /// Iterations compared after each restored state.

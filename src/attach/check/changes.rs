@@ -4,9 +4,10 @@ use super::report::{Outcome, fails, good, not_offered};
 use super::trial::{Trial, at, is_last};
 use serde_json::Value;
 use stickslip_core::Mode;
+use stickslip_core::plane::max_abs;
 use stickslip_core::words::counted;
+use stickslip_debugger::Fault;
 use stickslip_debugger::explain::names::{self, MODES};
-use stickslip_debugger::recorded::fault::Fault;
 use stickslip_debugger::recorded::orders::{FRICTION, INCREMENT};
 use stickslip_exchange::attach::message::{EndedLevel, Id, ParameterKind, ParameterMessage, State};
 use stickslip_scene::shown;
@@ -368,7 +369,7 @@ pub fn friction(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> {
             .iter()
             .flat_map(|state| &state.contacts)
             .filter_map(|found| found.limit);
-        all.fold(0.0, |most: f64, limit| most.max(limit.abs()))
+        max_abs(all)
     };
     let cohesion = trial.scene.contacts.iter().fold(0.0, |most: f64, contact| {
         most.max(contact.friction.cohesion)

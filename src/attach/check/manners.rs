@@ -5,7 +5,7 @@ use super::report::{Outcome, fails, good, not_offered};
 use super::trial::{Trial, millis};
 use std::time::{Duration, Instant};
 use stickslip_core::Mode;
-use stickslip_debugger::recorded::fault::Fault;
+use stickslip_debugger::Fault;
 use stickslip_exchange::attach::message::{Id, State};
 use stickslip_exchange::attach::{Answer, Request};
 

@@ -16,8 +16,7 @@ mod trial;
 use super::link::Start;
 pub use report::{CheckResult, Outcome, Report, Verdict};
 use stickslip_core::words::counted;
-use stickslip_debugger::recorded::fault::Fault;
-use stickslip_debugger::recorded::log::Log;
+use stickslip_debugger::{Fault, Log};
 use stickslip_exchange::attach::message::State;
 use trial::{Trial, millis};
 

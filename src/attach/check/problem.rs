@@ -13,7 +13,7 @@ use super::trial::Trial;
 use nalgebra::DVector;
 use stickslip_core::words::times;
 use stickslip_core::{Mode, ReportedProblem};
-use stickslip_debugger::recorded::fault::Fault;
+use stickslip_debugger::Fault;
 use stickslip_debugger::recorded::interface_problem::read_problem;
 use stickslip_exchange::attach::message::{EndedLevel, Id, State};
 use stickslip_exchange::attach::{Answer, Request};

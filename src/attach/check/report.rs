@@ -1,7 +1,7 @@
 //! The results of a check.
 
 use std::fmt::Write;
-use stickslip_debugger::recorded::fault::Fault;
+use stickslip_debugger::Fault;
 
 /// The verdict of a check.
 #[derive(Debug, Clone, PartialEq, Eq)]

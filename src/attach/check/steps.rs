@@ -3,13 +3,14 @@
 
 use super::report::{Outcome, Report, fails, good, not_tried};
 use super::trial::{Trial, millis};
+use stickslip_core::plane::max_abs;
 use stickslip_core::step::judged::ALLOWED;
 use stickslip_core::step::state::State as OurState;
 use stickslip_core::words::counted;
 use stickslip_core::{Mode, Model, Position};
+use stickslip_debugger::Fault;
 use stickslip_debugger::explain::names;
 use stickslip_debugger::recorded::decode::WireFrame;
-use stickslip_debugger::recorded::fault::Fault;
 use stickslip_scene::shown;
 
 use std::time::Instant;
@@ -294,7 +295,7 @@ fn laws(states: &[State]) -> Outcome {
     let all = states.iter().flat_map(|state| &state.contacts);
     let forces = all.flat_map(|found| [found.f_n, found.f_t.map(|f| f.size())]);
     let forces = forces.flatten();
-    let largest = forces.fold(0.0, |most: f64, force| most.max(force.abs()));
+    let largest = max_abs(forces);
     let slips = states.iter().flat_map(|state| &state.contacts);
     let slips = slips.filter_map(|found| Some(found.slip?.size()));
     let crawl = ALLOWED * slips.fold(0.0, f64::max);

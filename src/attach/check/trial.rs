@@ -7,8 +7,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 use stickslip_core::Mode;
-use stickslip_debugger::recorded::fault::Fault;
-use stickslip_debugger::recorded::log::Log;
+use stickslip_debugger::{Fault, Log};
 use stickslip_exchange::attach::message::{ContactResult, EndedLevel, Hello, Id, Scene, State};
 use stickslip_exchange::attach::{Answer, Request};
 

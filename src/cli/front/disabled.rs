@@ -1,10 +1,8 @@
 //! Replaces `front` in a build without the feature `tui`: every function reports that this build has no debugger.
 
 use super::base::Error;
-use stickslip_debugger::action::Colours;
-use stickslip_debugger::record::journal::{JournalTarget, Record};
-use stickslip_debugger::session::Session;
-use stickslip_debugger::teach::Lesson;
+use stickslip_debugger::record::journal::Record;
+use stickslip_debugger::{Colours, JournalTarget, Lesson, Session};
 
 /// Fails: this build has no debugger.
 pub fn ready() -> Result<(), Error> {

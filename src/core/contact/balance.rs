@@ -4,8 +4,8 @@
 //! restrained ones. Internal forces are invariant under rigid motions, so their sum and the sum of their moments vanish; the same
 //! then holds for the reactions and the loads together.
 
-use crate::contact::laws::{Finding, JudgedLaw, JudgedNumbers, Scales, Verdict};
-use crate::model::{Body, BodyKind, Model};
+use crate::model::{Body, BodyKind};
+use crate::{Finding, JudgedLaw, JudgedNumbers, Model, Scales, Verdict};
 
 /// Forces by degree of freedom ([`crate::model::Dofs`]), and the contact forces by node.
 #[derive(Debug, Clone, Copy)]

@@ -4,11 +4,11 @@
 //! history, so here every element is searched. With the curve x(ξ) and the point p, the derivative of half the squared distance,
 //! (x − p) · x', changes sign from minus to plus at a closest point inside an element.
 
-use crate::contact::element::{ElementPositions, SurfaceElement};
-use crate::contact::projection::{Bounds, SurfacePoint, blend};
+use crate::contact::projection::{Bounds, blend};
 use crate::fem::lagrange::{MAX_NODES, Shape, node, shape};
 use crate::model::Surface;
 use crate::plane::{dot, length, minus, unit};
+use crate::{ElementPositions, SurfaceElement, SurfacePoint};
 use std::sync::LazyLock;
 
 /// Number of search intervals per degree of a curved element.

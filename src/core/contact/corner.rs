@@ -28,7 +28,7 @@
 //! pointing from the vertex along side i: this is the law above with −h instead of h. If φ <= h, no force satisfies it, and the
 //! node moves to one of the sides.
 
-use crate::model::Friction;
+use crate::Friction;
 use crate::plane::{cross, dot, unit};
 
 /// A side of a master at a point, with its friction.

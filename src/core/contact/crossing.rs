@@ -7,10 +7,10 @@
 //! The corner holds a node like one within a chain ([`crate::contact::corner`]), with the force assigned to the first surface.
 //! That is valid only for rigid surfaces, whose supports carry it; corners between other surfaces are not supported.
 
-use crate::contact::element::SurfaceElement;
-use crate::contact::projection::{STRAIGHT, SurfacePoint, blend, right_of};
+use crate::contact::projection::{STRAIGHT, blend, right_of};
 use crate::model::Surface;
 use crate::plane::{cross, dot, length, minus, unit};
+use crate::{SurfaceElement, SurfacePoint};
 
 /// Maximum number of Newton steps; straight chains need one.
 const STEPS: usize = 20;

@@ -24,17 +24,18 @@
 use crate::contact::closest_history::{ClosestPoints, FEW};
 use crate::contact::closest_points::{self, ClosestPoint, direction, place, speed};
 use crate::contact::corner::Side;
-use crate::contact::element::{SurfaceElement, closed};
+use crate::contact::element::closed;
 use crate::contact::facing::{MOST, faced};
-use crate::contact::laws::{Finding, JudgedLaw, JudgedNumbers, Scales, Verdict};
 use crate::contact::point_force::judged::{JudgedGives, LoadedInterface, hand_on};
-use crate::contact::projection::{SurfacePoint, projection_at, tangent};
+use crate::contact::projection::{projection_at, tangent};
 use crate::contact::side_laws::{Amounts, SideHistory, TouchedSide};
 use crate::contact::side_laws::{beyond_border, in_corner, on_side, slip_into};
 use crate::contact::stick_point::distance;
-use crate::model::Friction;
 use crate::model::{Bond, Contact, Surface};
 use crate::plane::{self, dot, length, minus, unit};
+use crate::{
+    Finding, Friction, JudgedLaw, JudgedNumbers, Scales, SurfaceElement, SurfacePoint, Verdict,
+};
 
 /// Input of the judge: an interface, now and in the last accepted state.
 #[derive(Debug, Clone, Copy)]

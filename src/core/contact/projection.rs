@@ -5,10 +5,10 @@
 //! contact. Frame: the outward normal n is on the right of the walk along the chain, and t is n turned 90 degrees anticlockwise,
 //! so t points along the walk. The gap is (x_S − x_S*) · n; negative is penetration.
 
-use crate::contact::element::{ElementPositions, SurfaceElement};
 use crate::fem::lagrange::MAX_NODES;
 use crate::model::Surface;
 use crate::plane::{cross, dot, length, minus, unit};
+use crate::{ElementPositions, SurfaceElement};
 
 /// Distance beyond an end of a chain at which a node still counts as over it, relative to the last element's length.
 const END_TOLERANCE: f64 = 1e-9;

@@ -1,9 +1,7 @@
 //! Result of a minor iteration at one slave node.
 
 use crate::contact::corner::{Side, split};
-use crate::contact::projection::SurfacePoint;
-use crate::contact::table2::{Decision, Rule, Test, TestedQuantity};
-use crate::model::{Friction, Mode};
+use crate::{Decision, Friction, Mode, Rule, SurfacePoint, Test, TestedQuantity};
 use serde::{Deserialize, Serialize};
 
 /// Result of a minor iteration at one slave node. Forces are total forces on the slave node.

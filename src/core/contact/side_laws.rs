@@ -2,11 +2,9 @@
 
 use crate::contact::corner::half_angle;
 use crate::contact::corner::{Side, beyond_corner, beyond_slid, beyond_vertex};
-use crate::contact::element::SurfaceElement;
-use crate::contact::laws::{JudgedNumbers, Scales};
-use crate::contact::projection::SurfacePoint;
 use crate::model::Surface;
 use crate::plane::{cross, dot};
+use crate::{JudgedNumbers, Scales, SurfaceElement, SurfacePoint};
 
 /// A side of the master that a node touches.
 #[derive(Debug, Clone, Copy)]

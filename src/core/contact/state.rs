@@ -1,9 +1,8 @@
 //! The state of a slave node between minor iterations.
 
 use crate::contact::corner;
-use crate::contact::projection::SurfacePoint;
-use crate::contact::record::Forced;
-use crate::model::{Friction, InitialState, Mode, Settings, SlipCount, Sticking};
+use crate::model::{InitialState, SlipCount, Sticking};
+use crate::{Forced, Friction, Mode, Settings, SurfacePoint};
 use serde::{Deserialize, Serialize};
 
 /// A slave node between two minor iterations.

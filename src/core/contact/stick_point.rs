@@ -14,10 +14,11 @@
 //!
 //! Drift has the sign of slip, u_tS* − u_tS, and is what sticking must undo (Table 1).
 
-use crate::contact::element::{ElementPositions, SurfaceElement, closed};
-use crate::contact::projection::{Projection, SurfacePoint, has_kink, project, tangent};
+use crate::contact::element::closed;
+use crate::contact::projection::{Projection, has_kink, project, tangent};
 use crate::model::Surface;
 use crate::plane::length as span;
+use crate::{ElementPositions, SurfaceElement, SurfacePoint};
 
 /// Gauss-Legendre points and weights for the length of an element; constants, because every major iteration needs them.
 const POINTS: [(f64, f64); 5] = [

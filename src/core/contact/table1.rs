@@ -16,7 +16,7 @@
 //! undoes that slip, measured from the stick point ([`crate::contact::stick_point`]) or accumulated; in the paper's reading, slip
 //! is accumulated over a single major iteration, and there is nothing to undo.
 
-use crate::model::{Friction, Mode};
+use crate::{Friction, Mode};
 
 /// The component of the motion of S* relative to S in an equation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

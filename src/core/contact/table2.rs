@@ -1,6 +1,6 @@
 //! Table 2: the next mode of a slave node, and the reason.
 
-use crate::model::Mode;
+use crate::Mode;
 use serde::de::IntoDeserializer;
 use serde::de::value::{Error as NoName, StringDeserializer};
 use serde::{Deserialize, Deserializer, Serialize};

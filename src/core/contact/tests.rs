@@ -1,6 +1,7 @@
 //! Tests of smooth chains: positions, slopes and normals, the distance from a circle, and the distribution of a force.
 
-use crate::contact::element::{SurfaceElement, closed};
+use crate::SurfaceElement;
+use crate::contact::element::closed;
 use crate::contact::projection::{project, projection_at, tangent};
 use crate::contact::smooth::smooth;
 use crate::fem::lagrange::MAX_NODES;

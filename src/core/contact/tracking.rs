@@ -13,19 +13,17 @@
 
 use crate::contact::corner;
 use crate::contact::crossing;
-use crate::contact::element::SurfaceElement;
 use crate::contact::facing::{MOST, faced, is_piece};
 use crate::contact::point_force;
 use crate::contact::projection::{
-    Projection, STRAIGHT, SurfacePoint, border, element_size, mean_normal, neighbour, normal,
-    point_on_side, project, projection_at, sharpen, slopes_at_border, tangent,
+    Projection, STRAIGHT, border, element_size, mean_normal, neighbour, normal, point_on_side,
+    project, projection_at, sharpen, slopes_at_border, tangent,
 };
-use crate::contact::state::ContactState;
 use crate::contact::stick_point::distance;
 use crate::contact::table1::t_max;
-use crate::model::Mode;
-use crate::model::{Bond, Contact, Friction, Surface};
+use crate::model::{Bond, Contact, Surface};
 use crate::plane::{cross, dot};
+use crate::{ContactState, Friction, Mode, SurfaceElement, SurfacePoint};
 
 /// A node is at a corner or vertex if its distance is below this fraction of the element's size.
 const AT_VERTEX: f64 = 1e-9;

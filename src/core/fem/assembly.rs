@@ -7,15 +7,14 @@
 use crate::executor::{Executor, SequentialExecutor};
 use crate::fem::beam::{self, Section};
 use crate::fem::continuum;
-use crate::fem::element::{Element, ElementOutput, Previous};
+use crate::fem::element::{Element, Previous};
 use crate::fem::isoparametric;
-use crate::fem::material::Material;
 use crate::fem::matrix;
 use crate::fem::small;
 use crate::fem::truss;
 use crate::linalg::Pattern;
-use crate::model::Model;
 use crate::model::{Beam, Body, BodyKind, Dofs, Solid, SolidElement, Truss};
+use crate::{ElementOutput, Material, Model};
 use std::ops::Range;
 use std::sync::Arc;
 

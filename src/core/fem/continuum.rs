@@ -1,12 +1,12 @@
 //! Continuum elements of each kind ([`super::kinds`]).
 
+use crate::Material;
 use crate::elements::kinds::continuum_kind::{ContinuumKind, Parent};
 use crate::elements::kinds::custom::{CustomKind, KindError};
 use crate::elements::kinds::data_of;
 use crate::fem::element::{Element, Previous};
 use crate::fem::isoparametric::ContinuumElement;
 use crate::fem::isoparametric::{self, PointState};
-use crate::fem::material::Material;
 use crate::fem::small;
 use crate::model::{ElementKind, Plane, Update};
 

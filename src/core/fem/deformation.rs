@@ -19,7 +19,8 @@
 
 use super::continuum::{self, PointGradient};
 use super::material::Material;
-use crate::model::{BodyKind, Elastic, Law, Model, Plane, Update};
+use crate::Model;
+use crate::model::{BodyKind, Elastic, Law, Plane, Update};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::E;
 

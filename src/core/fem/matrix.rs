@@ -8,7 +8,7 @@
 //! W may be singular, so its forces y are unknowns in addition to the displacements. The right-hand side `free λ` is a load on
 //! their equations.
 
-use crate::fem::element::ElementOutput;
+use crate::ElementOutput;
 use crate::linalg::Pattern;
 use crate::model::{Body, Dofs, Form, Linear};
 

@@ -17,9 +17,9 @@
 use crate::elements::lagrange::{self, MAX_NODES};
 use crate::fem::continuum;
 use crate::fem::element::{Element, Previous};
-use crate::fem::material::Material;
 use crate::linalg::Pattern;
-use crate::model::{BodyKind, Dofs, Factor, Model, PressedFace, Update};
+use crate::model::{BodyKind, Dofs, Factor, PressedFace, Update};
+use crate::{Material, Model};
 use std::cell::RefCell;
 use std::f64::consts::TAU;
 
@@ -300,6 +300,7 @@ fn samples(m: usize) -> Vec<Sample> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plane::max_abs;
 
     /// A single curved face with m nodes.
     fn face(m: usize, thickness: Option<f64>) -> Pressures {
@@ -387,7 +388,7 @@ mod tests {
             };
             let u: Vec<f64> = (0..8).map(|k| 0.05 * ((k * 7 % 5) as f64 - 2.0)).collect();
             let (force, tangent) = whole(&u, material);
-            let (scale, h) = (tangent.iter().fold(0.0_f64, |m, k| m.max(k.abs())), 1e-5);
+            let (scale, h) = (max_abs(&tangent), 1e-5);
             assert!(scale > 1.0);
             for j in 0..8 {
                 let moved = |by: f64| {

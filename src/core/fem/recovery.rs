@@ -8,8 +8,9 @@
 use super::continuum;
 use super::element::Previous;
 use super::material::Material;
+use crate::Model;
 use crate::fem::isoparametric::{self, PointState};
-use crate::model::{Body, BodyKind, ElementKind, Model, SolidElement};
+use crate::model::{Body, BodyKind, ElementKind, SolidElement};
 use nalgebra::DMatrix;
 use std::collections::HashMap;
 

@@ -15,8 +15,8 @@
 //! the census like in a complete enumeration.
 
 use crate::interface::feasible::BoundedForms;
-use crate::interface::problem::{AssumedMode, InterfaceProblem};
 use crate::linalg::DenseFactors;
+use crate::{AssumedMode, InterfaceProblem};
 
 /// Relaxation of every bound, in the problem's units of force and length. A combination is consistent if it violates them by at
 /// most 1e-9.

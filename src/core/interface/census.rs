@@ -6,11 +6,9 @@
 //! separately and tries only combinations that branch and bound ([`crate::interface::branches`]) does not rule out.
 
 use crate::interface::branches;
-use crate::interface::kinematics::NodeIncrement;
-use crate::interface::problem::{
-    self, Answer, AssumedMode, InterfaceProblem, Margin, NodeAnswer, SINGULAR,
-};
-use crate::interface::response::InterfaceResponse;
+use crate::interface::problem::{self, Answer, Margin, SINGULAR};
+use crate::plane::max_abs;
+use crate::{AssumedMode, InterfaceProblem, InterfaceResponse, NodeAnswer, NodeIncrement};
 
 /// Maximum number of nodes of a census: 4^8 = 65,536 combinations.
 pub const MOST: usize = 8;
@@ -284,7 +282,7 @@ impl<'a> Walk<'a> {
                     let value = relation.place_row(s, k, row, node.prescribed, &mut matrix);
                     let mut line: Vec<f64> =
                         (0..count).map(|j| matrix[j * count + 2 * s + k]).collect();
-                    let largest = line.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+                    let largest = max_abs(&line);
                     let scale = if largest > 0.0 { 1.0 / largest } else { 1.0 };
                     line.iter_mut().for_each(|x| *x *= scale);
                     line.extend([value * scale, probe(2 * s + k)]);

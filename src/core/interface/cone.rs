@@ -5,7 +5,7 @@
 
 use super::blocks::Blocks;
 use super::sweep::Sweep;
-use crate::model::{Friction, Mode};
+use crate::{Friction, Mode};
 use nalgebra::{DMatrix, DVector};
 use std::sync::Arc;
 

@@ -10,7 +10,7 @@
 //! with T the tangential rows and M their friction coefficients, so that a smallest eigenvalue of W above ‖M T W‖ excludes two.
 
 use super::cone::{ConeContact, lawful};
-use crate::model::{Friction, Mode};
+use crate::{Friction, Mode};
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::FRAC_PI_2;
 

@@ -17,9 +17,8 @@
 //! therefore several starts are used. The form of [`crate::interface::lemke`] has half as many rows but is not
 //! copositive.
 
-use crate::contact::table2::TestedQuantity;
-use crate::interface::problem::{AssumedMode, InterfaceProblem};
 use crate::interface::tableau::{Columns, PathEnd, PathStart, Tableau, positive};
+use crate::{AssumedMode, InterfaceProblem, TestedQuantity};
 
 /// A path that ends on a ray counts as solved if the covering variable is at most this (relative): the rows that should bound it
 /// are tied, and round-off decides between them.

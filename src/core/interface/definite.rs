@@ -7,8 +7,7 @@
 //! W = −(R⁻¹ + 1/k) for the components that can vary: those that contain an unknown, tangential ones only for nodes with
 //! friction. Only its symmetric part is examined and changed; the rest of W, and the motions without forces, stay.
 
-use crate::interface::problem::InterfaceProblem;
-use crate::interface::response::InterfaceResponse;
+use crate::{InterfaceProblem, InterfaceResponse};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 /// Eigenvalues below this fraction of the largest, times the matrix size, are round-off.

@@ -12,9 +12,9 @@
 //! Constant forces: those of nodes that do not touch, those carried by supports, and those of a node with cohesion but without
 //! pressure, because it would jump.
 
+use crate::InterfaceProblem;
 use crate::interface::census::{Census, Consistent};
 use crate::interface::feasible::BoundedForms;
-use crate::interface::problem::InterfaceProblem;
 use nalgebra::DMatrix;
 
 /// Relative tolerance for equal or zero gaps and slips (times the problem's length).

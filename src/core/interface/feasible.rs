@@ -8,6 +8,8 @@
 //! Infeasible" is a proof: one row violates its bound for all values of the columns within theirs (Farkas). The row is checked
 //! against the original forms, with an allowance for round-off; without such a proof the problem counts as feasible
 
+use crate::plane::max_abs;
+
 /// A coefficient below this fraction of the largest in its row cannot be a pivot.
 const TINY: f64 = 1e-9;
 /// Allowed round-off in a row, relative to the sum of its terms' magnitudes.
@@ -203,7 +205,7 @@ impl BoundedForms {
         let width = self.width();
         let line = &self.table[row * width..row * width + self.count];
         let missed = to - self.values[self.rows[row]];
-        let largest = line.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        let largest = max_abs(line);
         let candidates = &mut self.candidates;
         candidates.clear();
         for (column, &factor) in line.iter().enumerate() {

@@ -10,8 +10,8 @@
 //! for the gap, the relative motion v = Δu_S* − Δu_S and the slip. In the problem of forces and motions at the interface, v = −W
 //! F + …, this adds c to the diagonal of W. All mode decisions use S': here `gap` and `motion` are those of S'.
 
-use crate::contact::table1::{Equation, RelativeMotion};
 use crate::model::Bond;
+use crate::{Equation, RelativeMotion};
 use serde::{Deserialize, Serialize};
 
 /// Geometry of a slave node, frozen during a major iteration.

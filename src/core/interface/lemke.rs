@@ -11,10 +11,9 @@
 //! and without friction only the first line; [`crate::interface::tableau`] pivots through its bases. In this form cohesion also
 //! acts on open nodes, which Coulomb's law excludes; therefore the result is checked afterwards.
 
-use crate::contact::table2::TestedQuantity;
-use crate::interface::problem::{AssumedMode, InterfaceProblem};
 pub use crate::interface::tableau::PathEnd;
 use crate::interface::tableau::{Columns, PathStart, Tableau, positive};
+use crate::{AssumedMode, InterfaceProblem, TestedQuantity};
 
 /// A variable of the tableau.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -4,9 +4,7 @@
 //! z + α (z' − z) with the first α of 1, 1/2, 1/4, ... that reduces the natural map (the projection equations' error, Pang, Math.
 //! Oper. Res. 15, 1990); if none does, α is 1.
 
-use crate::interface::kinematics::NodeIncrement;
-use crate::interface::minor_history::Cycle;
-use crate::model::Friction;
+use crate::{Cycle, Friction, NodeIncrement};
 use serde::{Deserialize, Serialize};
 
 /// Number of halvings of a step.

@@ -4,10 +4,11 @@
 //! a node enters contact, the number of nodes that may change at once, the test itself, or a search over all nodes together
 //! ([`Search`]).
 
-use crate::contact::table2::{Decision, Entry, Numbers, Rule, TestedQuantity, Ties, decide};
-use crate::interface::problem::{AssumedMode, InterfaceProblem};
-use crate::interface::sweep::Sweep;
-use crate::model::{BoundUpdate, Friction, Strategy};
+use crate::contact::table2::{Entry, decide};
+use crate::{
+    AssumedMode, BoundUpdate, Decision, Friction, InterfaceProblem, Numbers, Rule, Strategy, Sweep,
+    TestedQuantity, Ties,
+};
 use serde::{Deserialize, Serialize};
 use std::any::Any;
 

@@ -3,14 +3,15 @@
 //! These are pure functions of the node's state and the solution, so that a minor iteration on a separate interface problem
 //! ([`super::trials::Trials`]) is the same as one of the stepper.
 
-use crate::contact::record::{ContactRecord, Forced};
-use crate::contact::state::ContactState;
 use crate::contact::table1::{direction, t_max};
-use crate::contact::table2::{Decision, Entry, Numbers, Rule, Ties};
-use crate::interface::kinematics::{NodeIncrement, NodeKinematics};
-use crate::interface::method::{self, Method};
+use crate::contact::table2::Entry;
+use crate::interface::method;
 use crate::interface::rows::{carried, moves};
-use crate::model::{Bond, BoundUpdate, Friction, Mode, Settings, SlipCount, Touch};
+use crate::model::{Bond, SlipCount, Touch};
+use crate::{
+    BoundUpdate, ContactRecord, ContactState, Decision, Forced, Friction, Method, Mode,
+    NodeIncrement, NodeKinematics, Numbers, Rule, Settings, Ties,
+};
 
 /// Parameters for checking modes.
 #[derive(Clone, Copy)]

@@ -1,8 +1,7 @@
 //! The inputs of the minor iterations of a major iteration, for detecting cycles.
 
-use crate::contact::state::ContactState;
 use crate::interface::cycle;
-use crate::model::Mode;
+use crate::{ContactState, Mode};
 use serde::{Deserialize, Serialize};
 
 /// A true cycle of minor iterations: equal modes and equal numbers.

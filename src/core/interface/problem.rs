@@ -6,14 +6,14 @@
 //! |F_t| <= tan φ F_n + c, or slips with |F_t| = tan φ F_n + c against the slip. This module solves for one combination of
 //! modes and measures how far the solution is from obeying this law; [`crate::interface::census`] tries all combinations.
 
-use crate::contact::state::ContactState;
-use crate::contact::table1::{Equation, FrictionBound, SlipDirection};
-use crate::contact::table2::Ties;
-use crate::interface::kinematics::{NodeIncrement, NodeKinematics};
-use crate::interface::response::InterfaceResponse;
+use crate::contact::table1::{FrictionBound, SlipDirection};
 use crate::interface::rows::{self, moves, supported};
 use crate::linalg::DenseFactors;
-use crate::model::{self, Friction, Mode, Settings};
+use crate::model;
+use crate::{
+    ContactState, Equation, Friction, InterfaceResponse, Mode, NodeIncrement, NodeKinematics,
+    Settings, Ties,
+};
 use serde::{Deserialize, Serialize};
 
 /// Estimated norm of the inverse of the scaled matrix above which a combination counts as singular.

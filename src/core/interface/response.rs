@@ -8,7 +8,7 @@
 //!
 //! For infinite k, z is the motion itself. Springs with finite k make the response exist if only contact supports a body.
 
-use crate::contact::table1::{Equation, RelativeMotion};
+use crate::{Equation, RelativeMotion};
 use serde::{Deserialize, Serialize};
 
 /// Response of the condensed bodies' interface; normal and tangential components of each slave node in turn.

@@ -1,9 +1,7 @@
 //! Table 1's equations of a node, modified where supports carry a force.
 
-use crate::contact::state::ContactState;
-use crate::contact::table1::{Equation, FrictionBound, SlipDirection, braked, equations, gone};
-use crate::interface::kinematics::NodeKinematics;
-use crate::model::{BoundUpdate, Friction, Mode, Settings};
+use crate::contact::table1::{FrictionBound, SlipDirection, braked, equations, gone};
+use crate::{BoundUpdate, ContactState, Equation, Friction, Mode, NodeKinematics, Settings};
 
 /// Table 1's equations of a node, normal and tangential. An equation without an unknown is replaced by zero force, and the
 /// supports carry that component ([`carried`]). `brake` resists sliding ([`crate::contact::table1::braked`]; 0 for Table 1

@@ -15,9 +15,8 @@
 
 use crate::interface::blocks::Blocks;
 use crate::interface::cone_law::local;
-use crate::interface::problem::{AssumedMode, InterfaceProblem, ProblemNode};
 use crate::linalg::DenseFactors;
-use crate::model::Friction;
+use crate::{AssumedMode, Friction, InterfaceProblem, ProblemNode};
 use std::ops::Range;
 use std::sync::Arc;
 

@@ -11,12 +11,9 @@
 //! component; so they hold where the sum of all |x − x*| is at most r. Periods are run one by one until powers of A keep x within
 //! this region forever.
 
-use crate::contact::state::ContactState;
-use crate::interface::method::Method;
-use crate::interface::problem::InterfaceProblem;
-use crate::interface::trials::Trials;
 use crate::linalg::DenseFactors;
-use crate::model::{BoundUpdate, Mode};
+use crate::plane::max_abs;
+use crate::{BoundUpdate, ContactState, InterfaceProblem, Method, Mode, Trials};
 
 /// Relative distance from the fixed point below which consecutive periods are equal.
 pub const REPEATS: f64 = 1e-12;
@@ -178,7 +175,7 @@ fn of_round(
         modes: (0..first.len())
             .map(|s| round[..period].iter().map(|nodes| nodes[s].mode).collect())
             .collect(),
-        distance: away.iter().fold(0.0, |m, x| x.abs().max(m)),
+        distance: max_abs(&away),
         radius: radius(&map, size),
         fate: TMaxLimit::Diverges,
         places,

@@ -7,9 +7,9 @@
 //! all sufficiently small ones; the path is then that of the shifted rows, but the reported values are those of the original
 //! rows.
 
-use crate::interface::method::SearchProgress;
-use crate::interface::response::InterfaceResponse;
 use crate::linalg::DenseFactors;
+use crate::plane::max_abs;
+use crate::{InterfaceResponse, SearchProgress};
 
 /// Entries of an entering column below this fraction of its largest are zero: for original rows, and for shifted ones, where no
 /// row needs such a small pivot.
@@ -372,7 +372,7 @@ impl Tableau {
             true => TINY_SHIFTED,
             false => TINY,
         };
-        let tiny = tiny * column.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        let tiny = tiny * max_abs(column);
         let rows = (0..self.rows).filter(|&row| column[row] > tiny && !self.is_loose(row));
         rows.reduce(|best, row| {
             let ratio = |row: usize| self.value(row) / column[row];

@@ -1,16 +1,13 @@
 //! Solves combinations of modes and minor iterations on a separate interface problem.
 
-use crate::contact::record::ContactRecord;
-use crate::contact::state::ContactState;
-use crate::contact::table1::Equation;
-use crate::interface::kinematics::NodeIncrement;
-use crate::interface::method::Method;
 use crate::interface::minor::{self, Check};
-use crate::interface::problem::{
-    Answer, AssumedMode, InterfaceProblem, ProblemNode, SINGULAR, node_answer,
-};
+use crate::interface::problem::{Answer, SINGULAR, node_answer};
 use crate::interface::rows;
 use crate::linalg::DenseFactors;
+use crate::{
+    AssumedMode, ContactRecord, ContactState, Equation, InterfaceProblem, Method, NodeIncrement,
+    ProblemNode,
+};
 
 /// Solves one set of equations after the other with preallocated workspace.
 pub struct Trials<'a> {

@@ -37,9 +37,10 @@
 //! coefficient that is small relative to the mesh size (Haslinger, Math. Methods Appl. Sci. 5, 1983; Hassani, Ionescu & Oudet,
 //! Int. J. Solids Struct. 44, 2007).
 
+use crate::InterfaceProblem;
 use crate::interface::definite;
-use crate::interface::problem::InterfaceProblem;
 use crate::linalg::DenseFactors;
+use crate::plane::max_abs;
 
 /// Number of tried scales of α, each twice the previous one, around 1.
 const SCALES: i32 = 8;
@@ -328,7 +329,7 @@ impl CompliancePart {
     fn is_definite(&self, matrix: &[f64]) -> bool {
         let size = self.size;
         let mut a = matrix.to_vec();
-        let largest = a.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        let largest = max_abs(&a);
         let least = self.round_off * size as f64 * largest;
         for k in 0..size {
             a[k * size + k] -= least;

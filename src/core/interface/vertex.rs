@@ -7,7 +7,8 @@
 //! they reach F_n = 0, where no mode change is possible. This is analogous to finding a vertex of a polyhedron in linear
 //! programming (Megiddo, ORSA J. Computing 3, 1991).
 
-use crate::interface::problem::{AssumedMode, InterfaceProblem};
+use crate::plane::max_abs;
+use crate::{AssumedMode, InterfaceProblem};
 
 /// Columns whose remainder is below this fraction of the largest are linearly dependent.
 const DEPENDENT: f64 = 1e-10;
@@ -130,7 +131,7 @@ fn nearest(problem: &InterfaceProblem, nodes: &[NodeForce], along: &[f64]) -> Op
             open: then != AssumedMode::Free || problem.nodes[place].friction.cohesion == 0.0,
         };
         let falls = -bound.of(along);
-        let size = along.iter().fold(0.0_f64, |m, d| m.max(d.abs()));
+        let size = max_abs(along);
         if falls.abs() <= DEPENDENT * size {
             return;
         }

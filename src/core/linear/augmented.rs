@@ -3,11 +3,9 @@
 use super::partners::{partners_motion, place_partners};
 use super::source::{LinearisationPoint, SolveResult};
 use super::system::System;
-use crate::contact::state::ContactState;
-use crate::contact::table1::{Equation, RelativeMotion};
 use crate::interface::kinematics::through;
-use crate::model::Model;
 use crate::plane::dot;
+use crate::{ContactState, Equation, Model, RelativeMotion};
 
 /// Estimated norm of the scaled inverse above which a system is suspected to be singular.
 const SUSPICIOUS: f64 = 1e12;

@@ -2,28 +2,25 @@
 
 use crate::contact::balance::{self, Forces};
 use crate::contact::judge::{Judge, JudgedState};
-use crate::contact::laws::{JudgedLaw, Scales, Verdict};
-use crate::contact::projection::SurfacePoint;
-use crate::contact::state::{ContactState, in_mode, largest_drift};
+use crate::contact::state::{in_mode, largest_drift};
 use crate::contact::stick_point::pierced;
 use crate::contact::tracking::Ground;
 use crate::executor::{Executor, SequentialExecutor};
 use crate::fem::assembly::history_len;
-use crate::fem::deformation::{Deformation, deformation};
-use crate::interface::kinematics::{NodeIncrement, NodeKinematics};
-use crate::interface::problem::InterfaceProblem;
+use crate::fem::deformation::deformation;
 use crate::linalg::SolveError;
 use crate::linear::drag::add_drag;
-use crate::linear::estimate::Estimate;
-use crate::linear::norms::Norms;
 use crate::linear::point_forces::PointForces;
-use crate::linear::singular::{self, Singular};
+use crate::linear::singular;
 use crate::linear::sizes::Sizes;
-use crate::linear::source::{LinearisationPoint, SolveResult, Source, Work};
-use crate::linear::stability::Stability;
 use crate::linear::system::System;
 use crate::linear::tangent::Tangent;
-use crate::model::{Axis, Contact, Factor, Friction, Mode, Model, MonitorQuantity, Settings};
+use crate::model::{Axis, Contact, Factor, MonitorQuantity};
+use crate::{
+    ContactState, Deformation, Estimate, Friction, InterfaceProblem, JudgedLaw, LinearisationPoint,
+    Mode, Model, NodeIncrement, NodeKinematics, Norms, Scales, Settings, Singular, SolveResult,
+    Source, Stability, SurfacePoint, Verdict, Work,
+};
 use std::sync::Arc;
 
 /// Minimum relative tolerance for violations of laws; it is larger if the settings' tolerance or round-off is larger.

@@ -20,9 +20,10 @@
 
 use super::source::{LinearisationPoint, LoadEquation};
 use super::system::System;
+use crate::Model;
 use crate::linalg::SolveError;
-use crate::model::{Factor, Model};
-use crate::plane::dot;
+use crate::model::Factor;
+use crate::plane::{dot, max_abs};
 
 /// A border is singular if its pivot is below this fraction of its terms.
 const NO_PIVOT: f64 = 1e-13;
@@ -222,7 +223,7 @@ impl System {
             *rhs = probe(k);
         }
         factors.solve(&border.rhs, &mut self.x)?;
-        let largest = |x: &[f64]| x.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        let largest = |x: &[f64]| max_abs(x);
         let plain = largest(&self.x);
         let product = |x: &[f64]| border.row.iter().zip(x).map(|(c, x)| c * x).sum::<f64>();
         let step = -product(&self.x) / (product(&border.moved) + border.given[1]);

@@ -28,10 +28,10 @@
 //! and only the masters' block K'_mm must be factored. This is the relation of `condensed` in the limit of stiff springs.
 
 use crate::executor::{Executor, each};
-use crate::interface::response::InterfaceResponse;
 use crate::linalg::{DenseFactors, Pattern, SolveError, SymmetricFactors, subtract_product};
 use crate::linear::coupling::Interface;
-use crate::model::{Body, BodyKind, Contact, Model};
+use crate::model::{Body, BodyKind, Contact};
+use crate::{InterfaceResponse, Model};
 use std::ops::Range;
 use std::sync::Arc;
 

@@ -5,9 +5,8 @@
 //! dense system for z with two unknowns per slave node, independent of the size of the bodies. If k is infinite, z is the motion
 //! itself: motions prescribed by Table 1 are known, and only the other motions are unknowns.
 
-use crate::contact::table1::{Equation, RelativeMotion};
-use crate::interface::response::InterfaceResponse;
 use crate::linalg::{DenseFactors, SolveError};
+use crate::{Equation, InterfaceResponse, RelativeMotion};
 
 /// The condensed interface of a major iteration, and the result of the last minor iteration.
 #[derive(Default)]

@@ -9,16 +9,15 @@
 //!
 //! This is the simplest source that can be stepped, and an example of what another code must provide ([`crate::linear::source`]).
 
-use crate::contact::projection::SurfacePoint;
-use crate::contact::state::ContactState;
-use crate::interface::kinematics::NodeKinematics;
 use crate::linalg::SolveError;
-use crate::linear::condensed::CondensedSystem;
-use crate::linear::norms::Norms;
-use crate::linear::source::{LinearisationPoint, Source};
 use crate::linear::violation::violation;
-use crate::model::{Bond, Contact, Dofs, Friction, Mode, Model, Node, Settings, Touch};
+use crate::model::{Bond, Contact, Dofs, Node, Touch};
+use crate::plane::max_abs;
 use crate::words::counted;
+use crate::{
+    CondensedSystem, ContactState, Friction, LinearisationPoint, Mode, Model, NodeKinematics,
+    Norms, Settings, Source, SurfacePoint,
+};
 
 /// A constant interface: its stiffness, loads and gaps.
 #[derive(Debug, Clone, PartialEq)]
@@ -208,7 +207,7 @@ impl Source for ConstantSource {
         let missing = &mut relation.start;
         self.interface
             .missing(at.u, at.target, at.contacts, missing);
-        let force = missing.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
+        let force = max_abs(missing.iter());
         self.condensed.fresh = true;
         let scale = self.scale(at);
         self.norms = at.norms(force, scale);

@@ -3,10 +3,10 @@
 use crate::contact::geometric_tangent::Variation;
 use crate::contact::point_force::LinearisedForce;
 use crate::contact::projection::{Projection, tangent};
-use crate::contact::state::ContactState;
 use crate::linalg::Pattern;
-use crate::model::{Bond, Contact, Model};
+use crate::model::{Bond, Contact};
 use crate::plane::dot;
+use crate::{ContactState, Model};
 
 /// A Cartesian displacement in a slave node's equations, with its weight in u_S* − u_S.
 #[derive(Debug, Clone, Copy)]

@@ -6,7 +6,7 @@
 
 use super::sizes::{BalancedQuantity, Sizes};
 use super::source::LinearisationPoint;
-use crate::model::Model;
+use crate::Model;
 
 /// Degrees of freedom with a drag: all free displacements.
 fn dragged<'a>(model: &'a Model, sizes: &'a Sizes) -> impl Iterator<Item = (usize, usize)> + 'a {

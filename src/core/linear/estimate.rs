@@ -15,8 +15,9 @@
 //!
 //! Contacts with a sparse compliance need memory proportional to its entries, and time proportional to the sweeps over them.
 
+use crate::Model;
 use crate::linear::sparse_contacts::sparse_contacts;
-use crate::model::{Body, BodyKind, Form, Linear, LinearSolver, Model};
+use crate::model::{Body, BodyKind, Form, Linear, LinearSolver};
 use std::fmt;
 
 /// Bytes per gigabyte in settings and messages.

@@ -2,7 +2,8 @@
 
 use super::coupling::Link;
 use super::system::System;
-use crate::model::{Beam, BodyKind, Component, Model};
+use crate::Model;
+use crate::model::{Beam, BodyKind, Component};
 
 impl System {
     /// Groups of unknowns for the elimination: a node's displacements with the forces of its interface equations, and each

@@ -7,10 +7,10 @@
 use super::coupling::{Interface, Partner};
 use super::point_forces::{FlexibleContact, PointForces};
 use super::source::LinearisationPoint;
+use crate::Model;
 use crate::contact::point_force::{NodeOverElement, linearise};
 use crate::fem::lagrange::MAX_NODES;
 use crate::linalg::Pattern;
-use crate::model::Model;
 
 /// Linearises all contacts on elements with local flexibility at the current forces.
 pub fn find_points(

@@ -1,11 +1,10 @@
 //! Point forces of all contacts on elements with local flexibility ([`crate::contact::point_force`]), including their
 //! interaction.
 
-use crate::contact::element::SurfaceElement;
 use crate::contact::point_force::{self, OtherForces, Pair, tilt, turned};
-use crate::contact::projection::{SurfacePoint, projection_at};
-use crate::contact::state::ContactState;
-use crate::model::{Mode, Model, PointGive};
+use crate::contact::projection::projection_at;
+use crate::model::PointGive;
+use crate::{ContactState, Mode, Model, SurfaceElement, SurfacePoint};
 
 /// Fixed-point iterations for normal forces and angles: each reduces the error by the factor tan² α.
 const ROUNDS: usize = 8;

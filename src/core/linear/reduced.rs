@@ -4,9 +4,9 @@ use super::augmented::{springs, suspicion};
 use super::source::{LinearisationPoint, SolveResult};
 use super::system::{Layout, System};
 use crate::interface::kinematics::through;
-use crate::interface::problem::{InterfaceProblem, ProblemNode};
 use crate::linalg::{Factors, SolveError};
-use crate::model::Model;
+use crate::plane::max_abs;
+use crate::{InterfaceProblem, Model, ProblemNode};
 
 /// Estimated norm of the scaled inverse above which the interface's system is suspected to be singular. The limit is lower than
 /// for the full system because the springs that support a loose body cost digits before they cancel.
@@ -81,7 +81,7 @@ impl System {
                 friction: node.friction(&at.friction[slave]),
                 state: *node,
             });
-        let largest = relation.start.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
+        let largest = max_abs(&relation.start);
         let problem = InterfaceProblem {
             nodes: nodes.collect(),
             force: if self.norms.scale > 0.0 {

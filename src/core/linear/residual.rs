@@ -7,8 +7,9 @@ use super::sizes::ROUND_OFF;
 use super::source::LinearisationPoint;
 use super::system::{Layout, System};
 use super::violation::violation;
+use crate::Model;
 use crate::linalg::Factors;
-use crate::model::{Factor, Model};
+use crate::model::Factor;
 
 impl System {
     /// Computes the out-of-balance force R − F of eqn (22) and its norms.

@@ -4,10 +4,10 @@
 //! Motions that satisfy all conditions are resisted only by existing stresses.
 
 use crate::contact::projection::{Projection, tangent};
-use crate::contact::state::ContactState;
-use crate::model::{BodyKind, Model};
-use crate::model::{Component, Mode};
-use crate::plane::minus;
+use crate::model::BodyKind;
+use crate::model::Component;
+use crate::plane::{max_abs, minus};
+use crate::{ContactState, Mode, Model};
 use nalgebra::{DMatrix, RowVector3};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
@@ -214,7 +214,7 @@ impl<'a> Frame<'a> {
 
     /// Describes the motion of each body in a null vector.
     fn name(&self, v: &[f64]) -> Vec<RigidMotion> {
-        let size = v.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        let size = max_abs(v);
         let moved = |b: &usize| v[3 * b..3 * b + 3].iter().any(|x| x.abs() > ZERO * size);
         (0..self.model.bodies.len())
             .filter(moved)
@@ -379,7 +379,7 @@ mod tests {
                 values.iter().filter(|value| **value < ZERO).count()
             );
             for v in basis {
-                let size = v.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+                let size = max_abs(&v);
                 let missed = (&dense * nalgebra::DVector::from_vec(v)).amax();
                 assert!(missed < 1e-10 * size, "{missed} of {size}");
             }

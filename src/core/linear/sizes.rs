@@ -8,9 +8,10 @@
 //!   only accurate to a few times the loads: regardless of the residual, no digit of its contact forces is right.
 
 use crate::fem::pressure::Pressures;
-use crate::linear::source::LinearisationPoint;
 use crate::model::Component;
-use crate::model::{Body, BodyKind, Factor, Form, Model};
+use crate::model::{Body, BodyKind, Factor, Form};
+use crate::plane::max_abs;
+use crate::{LinearisationPoint, Model};
 
 /// Round-off of an internal force or length, in units of the machine precision times the sum of its terms' magnitudes.
 pub const ROUND_OFF: f64 = 8.0;
@@ -61,9 +62,7 @@ impl Sizes {
             let (mut force, rest) = (vec![0.0; model.dofs.len()], vec![0.0; model.dofs.len()]);
             let peak = |scale: &Factor| peak(&model.path, scale);
             Pressures::new(model).each(model, &rest, peak, |dof, part| force[dof] += part);
-            let largest = force
-                .iter()
-                .fold(0.0_f64, |most, force| most.max(force.abs()));
+            let largest = max_abs(&force);
             sizes.reference = sizes.reference.max(largest);
         }
         sizes

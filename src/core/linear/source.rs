@@ -5,22 +5,17 @@
 //! the source receives the forces, moves its bodies, projects the slave nodes on their surfaces, and linearises again. Anything
 //! that implements this trait can be stepped.
 
-use crate::contact::laws::{Finding, JudgedLaw, JudgedNumbers, Scales, Verdict};
-use crate::contact::projection::SurfacePoint;
-use crate::contact::state::{ContactState, in_mode, largest_drift};
-use crate::fem::deformation::Deformation;
-use crate::interface::kinematics::{NodeIncrement, NodeKinematics};
-use crate::interface::method::NotFound;
+use crate::contact::state::{in_mode, largest_drift};
 use crate::interface::minor_history::Input;
-use crate::interface::problem::{InterfaceProblem, ProblemNode};
 use crate::interface::rows;
-use crate::interface::sweep::Sweep;
 use crate::linalg::SolveError;
-use crate::linear::condensed::CondensedSystem;
-use crate::linear::norms::Norms;
-use crate::linear::singular::Singular;
-use crate::linear::stability::Stability;
-use crate::model::{Axis, Friction, Mode, Model, MonitorQuantity, Settings};
+use crate::model::{Axis, MonitorQuantity};
+use crate::plane::max_abs;
+use crate::{
+    CondensedSystem, ContactState, Deformation, Finding, Friction, InterfaceProblem, JudgedLaw,
+    JudgedNumbers, Mode, Model, NodeIncrement, NodeKinematics, Norms, NotFound, ProblemNode,
+    Scales, Settings, Singular, Stability, SurfacePoint, Sweep, Verdict,
+};
 use std::sync::Arc;
 
 /// Estimated norm of the scaled inverse from which on the equations are suspected to be singular.
@@ -353,7 +348,7 @@ pub trait Source: Send {
         self.condensed().map_or(1.0, |condensed| {
             let diagonal = condensed.relation.response.iter();
             let diagonal = diagonal.step_by(2 * condensed.forces.len() + 1);
-            diagonal.fold(0.0, |most: f64, k| most.max(k.abs()))
+            max_abs(diagonal)
         })
     }
 
@@ -415,7 +410,7 @@ pub trait Source: Send {
 
     /// Largest displacement in a state; rotations are multiplied by the scene's length.
     fn largest_motion(&self, u: &[f64]) -> f64 {
-        u.iter().fold(0.0, |most: f64, u| most.max(u.abs()))
+        max_abs(u)
     }
 
     /// Largest displacement between two states (length).

@@ -9,26 +9,24 @@
 //! Nothing larger than the entries of W and the factors of a sparse system is stored. A minor iteration solves for the forces of
 //! the touching contacts; sweeps use the blocks of W ([`crate::interface::sweep`]).
 
-use crate::contact::projection::{SurfacePoint, projection_at};
-use crate::contact::state::ContactState;
+use crate::contact::projection::projection_at;
 use crate::contact::stick_point::pierced;
-use crate::contact::table1::{Equation, RelativeMotion};
 use crate::contact::tracking::Ground;
 use crate::interface::blocks::Blocks;
-use crate::interface::kinematics::{NodeIncrement, NodeKinematics};
-use crate::interface::method::NotFound;
-use crate::interface::problem::{InterfaceProblem, ProblemNode};
-use crate::interface::response::InterfaceResponse;
 use crate::interface::rows;
-use crate::interface::sweep::Sweep;
 use crate::linalg::{DenseFactors, Factors, Pattern, SolveError};
 use crate::linear::bodies::value;
-use crate::linear::norms::Norms;
-use crate::linear::source::{LinearisationPoint, SUSPICIOUS, SolveResult, Source, Work};
+use crate::linear::source::SUSPICIOUS;
 use crate::linear::sparse_contacts::sparse_contacts;
 use crate::linear::violation::violation;
-use crate::model::{Bond, Friction, Linear, Model, MonitorQuantity, Settings};
+use crate::model::{Bond, Linear, MonitorQuantity};
+use crate::plane::max_abs;
 use crate::strategy::SETTLED;
+use crate::{
+    ContactState, Equation, Friction, InterfaceProblem, InterfaceResponse, LinearisationPoint,
+    Model, NodeIncrement, NodeKinematics, Norms, NotFound, ProblemNode, RelativeMotion, Settings,
+    SolveResult, Source, SurfacePoint, Sweep, Work,
+};
 use std::sync::Arc;
 
 /// Maximum number of contacts for the dense form of the problem.
@@ -329,7 +327,7 @@ impl Source for SparseInterface {
         self.compliance.multiply(&self.load, &mut self.start);
         self.forces.copy_from_slice(&self.before);
         self.finish();
-        let largest = |values: &[f64]| values.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+        let largest = |values: &[f64]| max_abs(values);
         let loads = largest(&self.load).max(self.spring * largest(&self.free));
         let scale = loads.max(largest(&self.before)).max(f64::MIN_POSITIVE);
         let force = self.spring * largest(&self.moved);

@@ -1,8 +1,9 @@
 //! Recognises scenes that consist only of contacts on a level floor and one compliance: interface problems of other programs.
 
+use crate::Model;
 use crate::model::{
-    Body, BodyKind, Bond, Contact, Control, Form, Linear, LinearSolver, Model, Monitor,
-    MonitorQuantity, Surface,
+    Body, BodyKind, Bond, Contact, Control, Form, Linear, LinearSolver, Monitor, MonitorQuantity,
+    Surface,
 };
 
 /// Maximum number of contacts for which the equations of a compliance are solved together with those of the contacts.

@@ -6,28 +6,25 @@
 
 use crate::contact::geometric_tangent::{Variation, geometric_tangent};
 use crate::contact::projection::{Projection, projection_at, tangent};
-use crate::contact::state::ContactState;
 use crate::contact::stick_point::room;
-use crate::contact::table1::Equation;
 use crate::executor::Executor;
 use crate::fem::assembly::{Assembly, AssemblyMotion};
-use crate::fem::element::ElementOutput;
 use crate::fem::pressure::Pressures;
-use crate::interface::kinematics::{NodeIncrement, NodeKinematics};
 use crate::interface::rows;
 use crate::linalg::{Factors, Pattern, SolveError};
 use crate::linear::border::Border;
 use crate::linear::condensation::Condensation;
-use crate::linear::condensed::CondensedSystem;
 use crate::linear::coupling::Interface;
 use crate::linear::drag::stiffen;
-use crate::linear::estimate::{Estimate, condensable};
-use crate::linear::norms::Norms;
+use crate::linear::estimate::condensable;
 use crate::linear::partners::{join_partners, turn_points};
 use crate::linear::point_forces::PointForces;
 use crate::linear::sizes::Sizes;
-use crate::linear::source::{LinearisationPoint, SolveResult, Work};
-use crate::model::{Geometry, Model, Settings};
+use crate::model::Geometry;
+use crate::{
+    CondensedSystem, ContactState, ElementOutput, Equation, Estimate, LinearisationPoint, Model,
+    NodeIncrement, NodeKinematics, Norms, Settings, SolveResult, Work,
+};
 use std::sync::Arc;
 
 /// An equation whose coefficients are all below this is empty; otherwise the largest is one.

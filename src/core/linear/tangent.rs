@@ -11,9 +11,9 @@ use super::stability::{Conditions, Dense, Stability, ZERO, sliding, smooth};
 use super::system::System;
 use crate::contact::geometric_tangent::{Variation, geometric_tangent};
 use crate::fem::assembly::{Assembly, AssemblyMotion};
-use crate::fem::element::ElementOutput;
 use crate::linalg::{Pattern, SymmetricFactors};
-use crate::model::{Body, BodyKind, Form, Mode, Model};
+use crate::model::{Body, BodyKind, Form};
+use crate::{ElementOutput, Mode, Model};
 use nalgebra::DMatrix;
 use std::sync::Arc;
 

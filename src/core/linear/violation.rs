@@ -1,8 +1,8 @@
 //! Violation of the conditions of a state's modes.
 
 use super::source::LinearisationPoint;
-use crate::interface::kinematics::NodeKinematics;
-use crate::model::{Mode, Sticking};
+use crate::model::Sticking;
+use crate::{Mode, NodeKinematics};
 
 /// Largest violation of the interface conditions by a state's forces and gaps, relative to a length and a force: gaps of touching
 /// contacts, penetration of free ones, drift of anchored ones, and |F_t − T_max| of sliding ones.

@@ -14,18 +14,15 @@
 //! constraint and ends exactly there. The next size follows from the number of major iterations. A failed increment is cut, or
 //! restarted behind the corner of the path at its start ([`crate::step::recovery::path_corner`]).
 
-use crate::contact::laws::{Finding, Verdict};
-use crate::contact::state::ContactState;
-use crate::linear::norms::Norms;
-use crate::linear::singular::Singular;
-use crate::model::{ArcLength, ArcMeasure, Jumps, Mode, Model};
+use crate::model::{ArcLength, ArcMeasure, Jumps};
 use crate::step::arc_state::{ArcConstraint, ArcState, Change, ROUNDING, farthest};
-use crate::step::event::{Failure, Outcome};
 use crate::step::iterate::Iterate;
 use crate::step::jump::AcceptanceNotes;
-use crate::step::pace::{Pace, RATIO};
-use crate::step::state::State;
-use crate::step::stepper::Stepper;
+use crate::step::pace::RATIO;
+use crate::{
+    ContactState, Failure, Finding, Mode, Model, Norms, Outcome, Pace, Singular, State, Stepper,
+    Verdict,
+};
 use std::sync::Arc;
 
 /// A step doubles back if its angle to the reverse of the previous step has at least this cosine.

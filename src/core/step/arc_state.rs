@@ -1,9 +1,9 @@
 //! Progress of a history along the equilibrium path, as plain data; `arc` advances it.
 
-use crate::contact::state::ContactState;
 use crate::contact::table1::t_max;
 use crate::linear::source::LoadEquation;
-use crate::model::{ArcLength, ArcMeasure, Friction, Mode, Model};
+use crate::model::{ArcLength, ArcMeasure};
+use crate::{ContactState, Friction, Mode, Model};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 

@@ -3,20 +3,15 @@
 //! The forces are total forces of the only increment. It is accepted once the natural map, relative to the forces, is at most
 //! [`SETTLED`] and no mode changes.
 
-use crate::contact::record::ContactRecord;
-use crate::contact::table2::{Rule, Test, TestedQuantity};
 use crate::interface::blocks::Blocks;
-use crate::interface::sweep::Sweep;
-use crate::linear::norms::Norms;
-use crate::model::{Friction, Mode, Model, SpaceProblem};
-use crate::step::event::{Event, Failure, Outcome};
+use crate::model::SpaceProblem;
 use crate::step::judged::{self, ReferenceSizes};
-use crate::step::solver::{
-    Capabilities, Now, ReportedForm, ReportedProblem, RewindSupport, Solver, SolverLost,
-};
-use crate::step::state::State;
-use crate::step::stored_states::StoredStates;
 use crate::strategy::gauss_seidel::SETTLED;
+use crate::{
+    Capabilities, ContactRecord, Event, Failure, Friction, Mode, Model, Norms, Now, Outcome,
+    ReportedForm, ReportedProblem, RewindSupport, Rule, Solver, SolverLost, State, StoredStates,
+    Sweep, Test, TestedQuantity,
+};
 use std::sync::Arc;
 
 /// Maximum number of sweeps.
@@ -222,6 +217,7 @@ impl Solver for ConeSolver {
 mod tests {
     use super::*;
     use crate::model::{Contact, Node, Surface};
+    use crate::plane::max_abs;
     use crate::step::Status;
 
     /// Contacts on a floor with the compliance W = diagonal + coupling, pushed down and along different directions.
@@ -305,7 +301,7 @@ mod tests {
             while solver.step().expect("it steps") {}
             assert_eq!(solver.state().status, Status::Finished);
             let expected = fixed_point(&solver.problem, mu);
-            let largest = expected.iter().fold(0.0, |most: f64, f| most.max(f.abs()));
+            let largest = max_abs(&expected);
             for (found, expected) in solver.sweep.forces().iter().zip(&expected) {
                 assert!(
                     (found - expected).abs() < 1e-7 * largest,

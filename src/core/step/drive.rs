@@ -1,8 +1,6 @@
 //! Runs a solver: the loop over minor iterations, and how it ended.
 
-use crate::step::event::{Failure, Outcome};
-use crate::step::solver::{Solver, SolverLost};
-use crate::step::stepper::Stepper;
+use crate::{Failure, Outcome, Solver, SolverLost, Stepper};
 use std::convert::Infallible;
 use std::ops::ControlFlow;
 

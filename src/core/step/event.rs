@@ -1,20 +1,11 @@
 //! Typed record of one minor iteration.
 
-use crate::contact::laws::Finding;
 use crate::contact::projection::tangent;
-use crate::contact::record::ContactRecord;
-use crate::fem::deformation::PointDeformation;
-use crate::interface::method::NotFound;
-use crate::interface::minor_history::Cycle;
-use crate::linear::norms::Norms;
-use crate::linear::singular::Singular;
-use crate::linear::stability::Stability;
-use crate::model::{Model, Strategy};
 use crate::step::arc_state::{Change, ROUNDING, farthest};
-use crate::step::major_history::MajorCycle;
-use crate::step::recovery::fallback::Fallback;
-use crate::step::recovery::motion::Motion;
-use crate::step::watch::StabilityLoss;
+use crate::{
+    ContactRecord, Cycle, Fallback, Finding, MajorCycle, Model, Motion, Norms, NotFound,
+    PointDeformation, Singular, Stability, StabilityLoss, Strategy,
+};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 

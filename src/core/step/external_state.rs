@@ -1,13 +1,10 @@
 //! States of solvers that store their own data: what a debugger shows of them, updated from event to event.
 
-use crate::contact::projection::SurfacePoint;
-use crate::contact::record::{ContactRecord, Forced};
-use crate::contact::state::ContactState;
-use crate::contact::table2::{Decision, Rule};
-use crate::model::{Mode, Model};
-use crate::step::event::{Event, Outcome, Position};
-use crate::step::intervention::Intervention;
-use crate::step::state::{ExternalState, IncrementStart, State, Status};
+use crate::step::state::ExternalState;
+use crate::{
+    ContactRecord, ContactState, Decision, Event, Forced, IncrementStart, Intervention, Mode,
+    Model, Outcome, Position, Rule, State, Status, SurfacePoint,
+};
 use std::sync::Arc;
 
 impl ExternalState {

@@ -1,15 +1,10 @@
 //! Accepts, restarts or damps increments.
 
-use crate::contact::laws::Verdict;
-use crate::linear::norms::Norms;
-use crate::model::{Mode, least};
-use crate::step::event::Outcome;
+use crate::model::least;
 use crate::step::iterate::Iterate;
 use crate::step::jump::AcceptanceNotes;
-use crate::step::recovery::fallback::Fallback;
-use crate::step::state::Status;
-use crate::step::sub_increment::SubIncrement;
 use crate::step::verdict::range_left;
+use crate::{Fallback, Mode, Norms, Outcome, Status, SubIncrement, Verdict};
 use std::sync::Arc;
 
 /// Minimum fraction of its load to which a major iteration is damped.

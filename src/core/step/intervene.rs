@@ -1,14 +1,12 @@
 //! Applies what a user changes in a run: modes, the increment, friction or settings.
 
-use crate::contact::record::Forced;
-use crate::contact::state::ContactState;
 use crate::contact::table1::t_max;
-use crate::linear::estimate::Estimate;
-use crate::model::{Friction, Settings, Touch, least};
-use crate::model::{Mode, Model};
+use crate::model::{Touch, least};
 use crate::step::recovery::proximal::SlipStiffness;
-use crate::step::state::{Progress, State, Status};
-use crate::step::sub_increment::SubIncrement;
+use crate::step::state::Progress;
+use crate::{
+    ContactState, Estimate, Forced, Friction, Mode, Model, Settings, State, Status, SubIncrement,
+};
 use std::sync::Arc;
 
 pub use crate::step::intervention::{Intervention, Refusal, Start, Value};

@@ -1,7 +1,7 @@
 //! What a user can change in a run, as plain data; applied by [`super::intervene`].
 
 use crate::linear::estimate::TooLarge;
-use crate::model::{Friction, Mode, Settings};
+use crate::{Friction, Mode, Settings};
 use serde::{Deserialize, Serialize};
 
 /// A change made by the user; recorded in snapshots and replayed from them.

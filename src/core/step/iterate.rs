@@ -4,10 +4,7 @@
 //! The modules of the three levels add its methods where they are used: `major` renews and compares, `increment` accepts and
 //! restarts, `arc` follows the path, [`crate::step::recovery`] retries.
 
-use crate::linear::norms::Norms;
-use crate::linear::source::Source;
-use crate::model::Model;
-use crate::step::state::{IncrementStart, State};
+use crate::{IncrementStart, Model, Norms, Source, State};
 use std::any::Any;
 use std::sync::Arc;
 

@@ -4,11 +4,7 @@
 //! |T_max|, and friction that opposes the slip of a sliding node; in space, friction at its limit along the slip. Unreported
 //! quantities are not checked.
 
-use crate::contact::laws::{Finding, JudgedLaw, JudgedNumbers, Verdict};
-use crate::contact::record::ContactRecord;
-use crate::model::{Mode, Model};
-use crate::step::event::Event;
-use crate::step::state::State;
+use crate::{ContactRecord, Event, Finding, JudgedLaw, JudgedNumbers, Mode, Model, State, Verdict};
 
 /// Violations below this limit are accepted silently, relative to the largest force and the largest motion.
 /// Other solvers stop at their own criterion, often a thousandth, or satisfy the laws only on average over an

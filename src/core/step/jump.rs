@@ -14,17 +14,15 @@
 //! Near a limit point the halves may have no equilibrium although the whole increment has one beyond it. If the halves fail, the
 //! suspected increment is taken as a whole, and is a jump if it still moves more than expected.
 
-use crate::contact::laws::{Finding, Verdict};
-use crate::linear::norms::Norms;
-use crate::linear::stability::Stability;
 use crate::model::Jumps;
-use crate::step::event::{Failure, Outcome};
 use crate::step::iterate::Iterate;
-use crate::step::pace::{Pace, SuspectIncrement};
-use crate::step::recovery::fallback::{Fallback, FallbackState};
-use crate::step::stepper::Stepper;
-use crate::step::watch::{FAR, StabilityLoss};
+use crate::step::pace::SuspectIncrement;
+use crate::step::recovery::fallback::FallbackState;
+use crate::step::watch::FAR;
 use crate::strategy;
+use crate::{
+    Failure, Fallback, Finding, Norms, Outcome, Pace, Stability, StabilityLoss, Stepper, Verdict,
+};
 
 /// Motions below this fraction of the scene's length are not jumps: round-off can be as large.
 const NOTHING: f64 = 1e-9;

@@ -1,19 +1,14 @@
 //! The end of a major iteration: updates displacements, forces and geometry, and checks whether the increment has converged.
 
 use crate::contact::corner::least_friction;
-use crate::contact::record::ContactRecord;
-use crate::contact::state::ContactState;
-use crate::interface::method::SearchProgress;
-use crate::linear::norms::Norms;
-use crate::linear::singular::Singular;
-use crate::linear::source::SolveResult;
-use crate::model::{AtLimit, Friction, Mode, ResidualMethod, SlipCount, Sticking};
-use crate::step::event::{Failure, Outcome};
+use crate::model::{AtLimit, ResidualMethod, SlipCount, Sticking};
 use crate::step::iterate::Iterate;
-use crate::step::major_history::{MajorCycle, RepeatScales};
+use crate::step::major_history::RepeatScales;
 use crate::step::recovery::PATIENCE;
-use crate::step::state::State;
-use crate::step::stepper::Stepper;
+use crate::{
+    ContactRecord, ContactState, Failure, Friction, MajorCycle, Mode, Norms, Outcome,
+    SearchProgress, Singular, SolveResult, State, Stepper,
+};
 use std::sync::Arc;
 
 /// A displacement larger than this multiple of the scene's length is divergence.

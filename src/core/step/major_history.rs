@@ -1,10 +1,8 @@
 //! Cycles of major iterations: a node that alternates between two elements, or modes that change back and forth with the
 //! geometry, so that the increment never converges.
 
-use crate::contact::projection::SurfacePoint;
-use crate::contact::state::ContactState;
 use crate::interface::cycle;
-use crate::model::Mode;
+use crate::{ContactState, Mode, SurfacePoint};
 use serde::{Deserialize, Serialize};
 
 /// Numbers of two major iterations with a smaller relative difference are equal.

@@ -1,22 +1,16 @@
 //! A minor iteration: solves, checks the modes, and detects convergence of modes and T_max.
 
-use crate::contact::record::ContactRecord;
-use crate::contact::table2::Ties;
-use crate::interface::kinematics::NodeIncrement;
 use crate::interface::line_search::{LineSearch, natural_map};
-use crate::interface::method::Method;
 use crate::interface::minor::{self, Check};
-use crate::interface::minor_history::Cycle;
 use crate::interface::rows::carried;
 use crate::interface::t_max_iteration::{TMaxLimit, spiral};
-use crate::linear::singular::Singular;
 use crate::linear::sizes::ROUND_OFF;
-use crate::linear::source::SolveResult;
-use crate::model::{self, AtCycle, AtLimit, Mode, SlipCount};
-use crate::step::event::{Failure, Outcome};
+use crate::model::{self, AtCycle, AtLimit, SlipCount};
 use crate::step::iterate::Iterate;
-use crate::step::state::State;
-use crate::step::stepper::Stepper;
+use crate::{
+    ContactRecord, Cycle, Failure, Method, Mode, NodeIncrement, Outcome, Singular, SolveResult,
+    State, Stepper, Ties,
+};
 use std::sync::Arc;
 
 /// Two states of a minor loop with a smaller relative difference are equal. The limit is far below any tolerance, so that a

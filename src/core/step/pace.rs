@@ -10,8 +10,8 @@
 //! after a soft stretch, where the tangent and the fastest increment both predict large motions. If increments are not cut, halves
 //! cannot confirm a jump, and the fastest previous increment is ignored: a node that starts to slide is not a jump.
 
-use crate::model::{Factor, Model};
-use crate::step::sub_increment::SubIncrement;
+use crate::model::Factor;
+use crate::{Model, SubIncrement};
 use serde::{Deserialize, Serialize};
 
 /// Maximum ratio of the motion of an increment to the expected motion, beyond which it is suspected.

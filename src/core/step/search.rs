@@ -1,23 +1,18 @@
 //! Handles modes that do not converge: the next strategy of the ladder, or a search over all nodes.
 
-use crate::contact::record::{ContactRecord, Forced};
-use crate::contact::state::ContactState;
 use crate::contact::table1::t_max;
-use crate::contact::table2::{Decision, Rule, Test};
-use crate::interface::kinematics::NodeKinematics;
-use crate::interface::method::{NoProposal, NotFound, Proposal, SearchInput, SearchProgress};
+use crate::interface::method::{NoProposal, Proposal, SearchInput};
 use crate::interface::minor_history::Input;
-use crate::interface::problem::AssumedMode;
-use crate::linear::singular::Singular;
-use crate::model::{Contact, Geometry, Mode};
-use crate::step::event::{Failure, Outcome};
+use crate::model::{Contact, Geometry};
 use crate::step::iterate::Iterate;
 use crate::step::recovery::FROZEN;
 use crate::step::recovery::left_out::OmittedStep;
 use crate::step::state::Progress;
-use crate::step::state::State;
-use crate::step::stepper::Stepper;
 use crate::strategy;
+use crate::{
+    AssumedMode, ContactRecord, ContactState, Decision, Failure, Forced, Mode, NodeKinematics,
+    NotFound, Outcome, Rule, SearchProgress, Singular, State, Stepper, Test,
+};
 use std::cell::RefCell;
 
 impl Stepper {

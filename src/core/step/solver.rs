@@ -92,11 +92,8 @@
 //! [`ExternalState::asked`]: super::state::ExternalState::asked
 //! [`StoredStates`]: super::stored_states::StoredStates
 
-use crate::model::{Friction, Model};
-use crate::step::event::Event;
-use crate::step::intervene::{Intervention, Refusal, Value};
-use crate::step::state::{State, Status};
-use crate::step::stepper::Stepper;
+use crate::step::intervene::Value;
+use crate::{Event, Friction, Intervention, Model, Refusal, State, Status, Stepper};
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;

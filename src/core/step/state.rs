@@ -3,26 +3,23 @@
 //! A state is cheap to clone, since data that rarely change are shared. A run continued from a restored state is bit-identical to
 //! an uninterrupted one. Data that can be recomputed (geometry, stiffness, factors) are not stored.
 
-use crate::contact::laws::Verdict;
-use crate::contact::state::ContactState;
 use crate::fem::assembly::history_len;
 use crate::interface::line_search::LineSearch;
-use crate::interface::method::SearchProgress;
 use crate::interface::minor_history::MinorHistory;
-use crate::linear::source::{AcceptedState, LinearisationPoint};
+use crate::linear::source::AcceptedState;
 use crate::model::least;
-use crate::model::{Control, Friction, Geometry, Model, Settings, SlipCount};
+use crate::model::{Control, Geometry, SlipCount};
 use crate::step::arc_state::ArcState;
-use crate::step::event::{Failure, Position};
-use crate::step::intervention::{Intervention, Value};
+use crate::step::intervention::Value;
 use crate::step::major_history::MajorHistory;
-use crate::step::pace::Pace;
-use crate::step::recovery::fallback::{Fallback, FallbackState};
-use crate::step::recovery::motion::Motion;
+use crate::step::recovery::fallback::FallbackState;
 use crate::step::recovery::proximal::SlipStiffness;
-use crate::step::sub_increment::SubIncrement;
 use crate::step::watch::StabilityWatch;
 use crate::strategy;
+use crate::{
+    ContactState, Failure, Fallback, Friction, Intervention, LinearisationPoint, Model, Motion,
+    Pace, Position, SearchProgress, Settings, SubIncrement, Verdict,
+};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::Arc;

@@ -11,25 +11,17 @@
 //! The modules around this box: `minor` solves and checks, `search` handles modes that do not converge, `major` updates the
 //! forces, `verdict` and `jump` decide whether a converged state is accepted, `increment` accepts it or cuts.
 
-use crate::contact::state::ContactState;
 use crate::executor::{Executor, SequentialExecutor};
-use crate::interface::kinematics::NodeKinematics;
-use crate::interface::method::Method;
-use crate::interface::minor_history::Cycle;
-use crate::interface::problem::InterfaceProblem;
 use crate::linear::bodies::Bodies;
-use crate::linear::norms::Norms;
-use crate::linear::singular::Singular;
-use crate::linear::source::{SolveResult, Source, Work};
 use crate::linear::sparse::SparseInterface;
-use crate::linear::stability::Stability;
-use crate::model::{Model, Strategy};
-use crate::step::event::{Event, Failure, Outcome};
-use crate::step::intervene::{Intervention, Refusal};
 use crate::step::iterate::Iterate;
 use crate::step::recovery::left_out::OmittedStep;
-use crate::step::state::{State, Status};
 use crate::strategy::{self, AnyMethod};
+use crate::{
+    ContactState, Cycle, Event, Failure, InterfaceProblem, Intervention, Method, Model,
+    NodeKinematics, Norms, Outcome, Refusal, Singular, SolveResult, Source, Stability, State,
+    Status, Strategy, Work,
+};
 use std::sync::Arc;
 
 /// The solver: a state with its workspace, the strategy in force, and the event of the last minor iteration.

@@ -5,7 +5,7 @@
 //!
 //! [`ExternalState::place`]: super::state::ExternalState::place
 
-use crate::step::intervention::Intervention;
+use crate::Intervention;
 
 /// The places of a solver, each with its stored data.
 #[derive(Debug, Clone, PartialEq)]

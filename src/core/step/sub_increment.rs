@@ -1,6 +1,6 @@
 //! Increments of the load factor along the path, whole or cut: into halves, or once by the golden section.
 
-use crate::model::Model;
+use crate::Model;
 use serde::{Deserialize, Serialize};
 
 /// An increment, or a part of it after cuts into halves.

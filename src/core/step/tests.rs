@@ -2,13 +2,12 @@
 
 use super::drive::{RunEnd, Until};
 use super::stepper::Stepper;
-use crate::contact::laws::JudgedLaw;
 use crate::interface::census::census;
 use crate::linear::constant::Constant;
 use crate::model::{
-    Body, BodyKind, Contact, Dofs, Form, Friction, Linear, LinearSolver, Load, Mode, Model, Node,
-    Settings, Strategy, Surface,
+    Body, BodyKind, Contact, Dofs, Form, Linear, LinearSolver, Load, Node, Surface,
 };
+use crate::{Friction, JudgedLaw, Mode, Model, Settings, Strategy};
 use std::convert::Infallible;
 use std::ops::ControlFlow;
 use std::sync::Arc;

@@ -9,17 +9,12 @@
 //! A state with an inverted element (det F ≤ 0 at an integration point or a node of a solid) is always rejected: the increment
 //! is cut, and fails if it cannot be cut. Other interpretations of the contact status are not tried for such a state.
 
-use crate::contact::laws::{Finding, JudgedLaw, Verdict};
-use crate::contact::record::Forced;
-use crate::contact::state::ContactState;
-use crate::fem::deformation::PointDeformation;
-use crate::linear::norms::Norms;
-use crate::linear::source::Source;
 use crate::model::{SlipCount, Sticking, TieRule};
-use crate::step::event::{Failure, Outcome};
 use crate::step::iterate::Iterate;
-use crate::step::state::State;
-use crate::step::stepper::Stepper;
+use crate::{
+    ContactState, Failure, Finding, Forced, JudgedLaw, Norms, Outcome, PointDeformation, Source,
+    State, Stepper, Verdict,
+};
 
 impl Stepper {
     /// Accepts a converged state, or handles its refusal by the judge.

@@ -11,7 +11,7 @@
 //! Both costs are estimated from the scene's sizes ([`crate::linear::estimate`]), not measured, so that a run checks the same
 //! states on every machine. States on an arc-length path are not checked: such a path passes unstable states on purpose.
 
-use crate::linear::stability::Stability;
+use crate::Stability;
 use serde::{Deserialize, Serialize};
 
 /// Maximum fraction of the work for scheduled stability checks.

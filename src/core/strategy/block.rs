@@ -3,8 +3,8 @@
 //! As long as the number of changing nodes has reached a new minimum within the last few minor iterations of a major iteration,
 //! returning to earlier modes does not count as a cycle.
 
+use crate::Method;
 use crate::contact::table2::Entry;
-use crate::interface::method::Method;
 
 /// Nodes with friction start to slide; all changes at once until the number of changes stalls.
 pub struct Block;

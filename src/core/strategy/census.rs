@@ -1,12 +1,9 @@
 //! The census as a strategy: tries all combinations of modes ([`crate::interface::census`]). Consistent ones are proposed in
 //! sequence, starting with the one that changes the fewest nodes.
 
-use crate::contact::table2::{Rule, TestedQuantity};
 use crate::interface::census;
-use crate::interface::method::{
-    NoProposal, NotFound, Proposal, Search, SearchInput, SearchProgress,
-};
-use crate::interface::problem::{AssumedMode, NodeAnswer};
+use crate::interface::method::{NoProposal, Proposal, Search, SearchInput};
+use crate::{AssumedMode, NodeAnswer, NotFound, Rule, SearchProgress, TestedQuantity};
 
 /// All combinations of modes of the nodes that can touch.
 pub struct CensusStrategy;

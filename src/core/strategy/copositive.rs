@@ -4,11 +4,11 @@
 //! If forces are not unique, those found by pivoting are moved to a state whose modes have a unique solution
 //! ([`crate::interface::vertex`]). Table 2 checks the result in the next minor iteration.
 
-use crate::contact::table2::{Rule, TestedQuantity};
 use crate::interface::copositive::{Copositive as Pivoting, STARTS};
-use crate::interface::method::{NoProposal, NotFound, Proposal, Search, SearchInput};
+use crate::interface::method::{NoProposal, Proposal, Search, SearchInput};
 use crate::interface::tableau::PathEnd;
 use crate::interface::vertex::vertices;
+use crate::{NotFound, Rule, TestedQuantity};
 
 /// Pivoting from all nodes free, with the friction force split into two parts.
 pub struct CopositiveStrategy;

@@ -9,13 +9,9 @@
 //! fallen by a factor of 10, at most [`MOST_SWEEPS`] times. Below [`SETTLED`] the modes are solved for once more; if they have no
 //! unique solution, the forces of the sweeps are accepted.
 
-use crate::contact::table2::{Rule, TestedQuantity};
-use crate::interface::method::{
-    NoProposal, NotFound, Proposal, Search, SearchInput, SearchProgress,
-};
-use crate::interface::problem::AssumedMode;
-use crate::interface::sweep::Sweep;
+use crate::interface::method::{NoProposal, Proposal, Search, SearchInput};
 use crate::interface::vertex::vertices;
+use crate::{AssumedMode, NotFound, Rule, SearchProgress, Sweep, TestedQuantity};
 
 /// Sweeps, with a solve when the modes are stable.
 pub struct GaussSeidel;

@@ -6,8 +6,7 @@
 //! starts: a step of those costs a solve, and they need at least as many steps as there are nodes. Sweeps alone solve 248 of the
 //! 276 problems of `cargo bench --bench hyperstatic`, and pivoting solves the rest.
 
-use crate::interface::method::Method;
-use crate::model::Strategy;
+use crate::{Method, Strategy};
 
 /// Tries the rungs in order.
 pub struct Ladder;

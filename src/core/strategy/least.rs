@@ -2,8 +2,8 @@
 //!
 //! Nodes that react to each other's changes then no longer cycle together. The cost is one minor iteration per change.
 
+use crate::Method;
 use crate::contact::table2::Entry;
-use crate::interface::method::Method;
 
 /// Table 2, one change at a time.
 pub struct Least;

@@ -1,9 +1,9 @@
 //! Lemke's pivoting on the linear complementarity problem of Coulomb's law ([`crate::interface::lemke`]), with one pivot per
 //! minor iteration. Table 2 checks the result in the next minor iteration.
 
-use crate::contact::table2::{Rule, TestedQuantity};
 use crate::interface::lemke::{Lemke, PathEnd, STARTS};
-use crate::interface::method::{NoProposal, NotFound, Proposal, Search, SearchInput};
+use crate::interface::method::{NoProposal, Proposal, Search, SearchInput};
+use crate::{NotFound, Rule, TestedQuantity};
 
 /// Pivoting from several starts.
 pub struct LemkeStrategy;

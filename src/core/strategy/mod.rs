@@ -13,8 +13,7 @@ mod table2;
 
 pub use gauss_seidel::SETTLED;
 
-use crate::interface::method::Method;
-use crate::model::{BoundUpdate, Settings, Strategy};
+use crate::{BoundUpdate, Method, Settings, Strategy};
 use std::ops::Deref;
 use std::sync::Arc;
 

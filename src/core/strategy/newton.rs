@@ -16,9 +16,8 @@
 //!
 //! If full steps cycle, a line search repeats them ([`crate::interface::line_search`]).
 
-use crate::contact::table2::{Decision, Numbers, Rule, TestedQuantity};
-use crate::interface::method::{Choice, Method, NodeContext};
-use crate::model::{BoundUpdate, Mode};
+use crate::interface::method::{Choice, NodeContext};
+use crate::{BoundUpdate, Decision, Method, Mode, Numbers, Rule, TestedQuantity};
 
 /// Newton's method on the projection equations.
 pub struct Newton;

@@ -3,8 +3,8 @@
 //! In Table 2 it sticks first. If the friction bound is soon exceeded, sticking and sliding may then alternate forever. A node
 //! that slides from the start gets the direction of its motion and converges.
 
+use crate::Method;
 use crate::contact::table2::Entry;
-use crate::interface::method::Method;
 
 /// A node with friction starts to slide when it touches.
 pub struct Sliding;

@@ -1,6 +1,6 @@
 //! Table 2 as printed: every node's next mode follows from its own numbers, and all nodes change at the same time.
 
-use crate::interface::method::Method;
+use crate::Method;
 
 /// Table 2, and nothing else.
 pub struct Table2;

@@ -15,7 +15,7 @@ use super::meaning::Colours;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 use stickslip_platform::{input, system};
-use stickslip_scene::format::SceneError;
+use stickslip_scene::SceneError;
 use stickslip_scene::format::read;
 
 /// Names of the files.

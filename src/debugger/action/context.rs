@@ -3,11 +3,10 @@
 use super::keymap::Keymap;
 use super::parse_error::ParseError;
 use super::table::{ActionEntry, begun, by_name};
-use crate::history::tree::Tree;
+use crate::Tree;
 use stickslip_core::interface::census::MOST;
 use stickslip_core::{Capabilities, Model, State};
-use stickslip_scene::Scene;
-use stickslip_scene::embedded::EmbeddedFile;
+use stickslip_scene::{EmbeddedFile, Scene};
 
 /// What the arguments of actions can refer to.
 #[derive(Debug, Clone, Copy, Default)]

@@ -1,7 +1,7 @@
 //! Which actions are possible while the session is busy.
 
 use super::meaning::{Action, Page, Question, Ui};
-use crate::record::command::Command;
+use crate::Command;
 
 impl Action {
     /// Whether an action queries or changes the session.

@@ -12,7 +12,7 @@ use super::table::{ACTIONS, ActionEntry, Group, by_key};
 use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
 use std::collections::BTreeMap;
 use std::fmt;
-use stickslip_scene::format::SceneError;
+use stickslip_scene::SceneError;
 use stickslip_scene::format::error::{Path, did_you_mean, quoted};
 use stickslip_scene::format::locate::{line_and_column, locate};
 use stickslip_scene::format::read;

@@ -1,7 +1,6 @@
 //! The meaning of a key or a typed line: a command for the session, or an action of the terminal.
 
-use crate::history::watches::WatchQuantity;
-use crate::record::command::Command;
+use crate::{Command, WatchQuantity};
 use stickslip_manual as manual;
 use stickslip_study::Vary;
 

@@ -4,10 +4,9 @@
 use super::context::Context;
 use super::meaning::{Action, ChartOf, Page, Question, Ui};
 use super::table::{ActionEntry, Verb};
-use crate::record::command::{Command, ExportScope};
 use crate::record::export;
-use stickslip_core::model::Friction;
-use stickslip_core::{Capabilities, Intervention, Mode};
+use crate::{Command, ExportScope};
+use stickslip_core::{Capabilities, Friction, Intervention, Mode};
 
 /// What an action needs of the current solver.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

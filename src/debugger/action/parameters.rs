@@ -2,8 +2,9 @@
 //! contain spaces, with their current values.
 
 use super::context::Context;
+use stickslip_core::Parameter;
 use stickslip_core::step::intervene::Value;
-use stickslip_core::step::solver::{Parameter, Range};
+use stickslip_core::step::solver::Range;
 use stickslip_scene::format::paths;
 use stickslip_scene::number;
 use stickslip_scene::shown;

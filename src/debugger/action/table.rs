@@ -4,7 +4,7 @@
 
 use super::meaning::{Page, Step, Ui};
 use super::parse_error::ParseError;
-use crate::record::command::{BranchTarget, Command, ExportScope, Unit};
+use crate::{BranchTarget, Command, ExportScope, Unit};
 
 stickslip_core::words! {
     /// Heading under which help lists an action.

@@ -4,12 +4,10 @@ use super::meaning::{Action, Question, Ui};
 use super::{ACTIONS, Context, complete, markdown, parse};
 use crate::history::breakpoints::Condition;
 use crate::history::tree::Budget;
-use crate::history::tree::Tree;
-use crate::history::watches::{Watch, WatchQuantity};
-use crate::record::command::{Command, ExportScope, Unit};
+use crate::{Command, ExportScope, Tree, Unit, Watch, WatchQuantity};
 use std::path::PathBuf;
-use stickslip_core::model::{Contact, Friction, Node};
-use stickslip_core::{Mode, Model};
+use stickslip_core::model::{Contact, Node};
+use stickslip_core::{Friction, Mode, Model};
 use stickslip_scene::Scene;
 
 fn model() -> Model {

@@ -1,7 +1,6 @@
 //! Describes how far round-off limits the accuracy of a scene.
 
-use stickslip_core::contact::table2::{Test, TestedQuantity};
-use stickslip_core::{Event, Norms, Rule};
+use stickslip_core::{Event, Norms, Rule, Test, TestedQuantity};
 use stickslip_scene::number::{sig2, sig4};
 
 /// Describes the accuracy that round-off permits; `None` if it is sufficient.

@@ -5,10 +5,8 @@
 //! tried.
 
 use super::remedy::{Remedy, RemedyKind};
-use stickslip_core::model::{
-    AtCycle, BoundUpdate, Geometry, InitialGaps, Jumps, ResidualMethod, SearchMode,
-};
-use stickslip_core::{Failure, Mode, Model, Singular, State, Strategy};
+use stickslip_core::model::{AtCycle, Geometry, InitialGaps, Jumps, ResidualMethod, SearchMode};
+use stickslip_core::{BoundUpdate, Failure, Mode, Model, Singular, State, Strategy};
 use stickslip_scene::gaps::turned;
 
 /// A possible measure.

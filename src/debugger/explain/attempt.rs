@@ -5,8 +5,7 @@
 use std::mem::discriminant;
 use std::ops::ControlFlow;
 use std::sync::Arc;
-use stickslip_core::contact::projection::SurfacePoint;
-use stickslip_core::{Failure, Mode, Norms, Outcome, RunEnd, State, Stepper, Until};
+use stickslip_core::{Failure, Mode, Norms, Outcome, RunEnd, State, Stepper, SurfacePoint, Until};
 
 /// Result of a major iteration.
 #[derive(Debug, Clone)]

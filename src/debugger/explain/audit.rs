@@ -6,13 +6,14 @@
 //! produced work.
 
 use stickslip_core::contact::closest_points::place;
-use stickslip_core::contact::element::SurfaceElement;
-use stickslip_core::contact::laws::{Finding, JudgedLaw, Verdict};
-use stickslip_core::fem::deformation::{PointDeformation, deformation};
+use stickslip_core::fem::deformation::deformation;
 use stickslip_core::model::{BodyKind, Solid};
 use stickslip_core::plane::{dot, minus};
 use stickslip_core::step::judged::{self, ReferenceSizes};
-use stickslip_core::{Event, Model, Outcome, Solver, Stepper};
+use stickslip_core::{
+    Event, Finding, JudgedLaw, Model, Outcome, PointDeformation, Solver, Stepper, SurfaceElement,
+    Verdict,
+};
 
 /// Number of points per edge of an outline, for the search for nodes inside it.
 const POINTS: usize = 8;

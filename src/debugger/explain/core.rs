@@ -3,10 +3,10 @@
 //! To shrink a frozen interface problem that cycles, every node outside a trial set keeps the equations of its
 //! initial mode ([`InterfaceProblem::reduced`]), and Table 2 runs over the remaining nodes.
 
-use stickslip_core::interface::minor_history::{Cycle, MinorHistory};
+use stickslip_core::interface::minor_history::MinorHistory;
 use stickslip_core::interface::t_max_iteration::{TMaxLimit, spiral};
 use stickslip_core::strategy::method;
-use stickslip_core::{ContactState, InterfaceProblem, Mode, Trials};
+use stickslip_core::{ContactState, Cycle, InterfaceProblem, Mode, Trials};
 
 /// Up to this number of members, all subsets are tried, smallest first; beyond it, each member is dropped once,
 /// if possible.

@@ -1,9 +1,8 @@
 //! Describes cycles of minor and major iterations.
 
 use crate::explain::names::{mode, slave};
-use stickslip_core::interface::minor_history::Cycle;
-use stickslip_core::step::major_history::{MajorCycle, Stop};
-use stickslip_core::{Mode, Model};
+use stickslip_core::step::major_history::Stop;
+use stickslip_core::{Cycle, MajorCycle, Mode, Model};
 use stickslip_scene::shown::first_of;
 
 /// Maximum number of nodes named in a cycle.

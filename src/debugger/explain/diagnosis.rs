@@ -5,14 +5,14 @@ use crate::explain::core::{Core, core, cycle};
 use crate::explain::facts::{Fact, Part};
 use crate::explain::influence::{Influence, influences};
 use crate::explain::{names, proven, tested};
-use stickslip_core::contact::table2::TestedQuantity;
 use stickslip_core::interface::census::{self, Census, MOST, MOST_SEARCHED, search};
-use stickslip_core::interface::minor_history::Cycle;
-use stickslip_core::interface::problem::{AssumedMode, Condition, NodeAnswer};
-use stickslip_core::model::{BoundUpdate, SlipCount};
+use stickslip_core::interface::problem::Condition;
+use stickslip_core::model::SlipCount;
 use stickslip_core::strategy::method;
+use stickslip_core::words;
 use stickslip_core::{
-    ContactRecord, ContactState, InterfaceProblem, Mode, Model, Rule, Trials, words,
+    AssumedMode, BoundUpdate, ContactRecord, ContactState, Cycle, InterfaceProblem, Mode, Model,
+    NodeAnswer, Rule, TestedQuantity, Trials,
 };
 use stickslip_scene::number::sig4;
 use stickslip_scene::shown::{aligned, first_of};

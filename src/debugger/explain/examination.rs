@@ -8,11 +8,10 @@ use super::names;
 use super::proven;
 use super::step_size_probe::smaller;
 use stickslip_core::interface::census::{BUDGET, Census, MOST_SEARCHED, search};
-use stickslip_core::interface::minor_history::Cycle;
 use stickslip_core::interface::uniqueness::uniqueness;
 use stickslip_core::step::intervene::Start;
 use stickslip_core::strategy::method;
-use stickslip_core::{Failure, InterfaceProblem, Model, State, Status, Stepper, Trials};
+use stickslip_core::{Cycle, Failure, InterfaceProblem, Model, State, Status, Stepper, Trials};
 
 /// Shown at the end of the history.
 pub const DONE: &str = "The history is complete, so there is no next problem.";

@@ -6,10 +6,9 @@ use crate::explain::jumped;
 use crate::explain::names::slave;
 use crate::explain::strain;
 use stickslip_core::interface::census;
-use stickslip_core::interface::method::NotFound;
-use stickslip_core::linear::singular::{LooseMotion, RigidMotion};
+use stickslip_core::linear::singular::LooseMotion;
 use stickslip_core::words::{counted, times};
-use stickslip_core::{Failure, Model, Norms, Singular};
+use stickslip_core::{Failure, Model, Norms, NotFound, RigidMotion, Singular};
 use stickslip_scene::number::{sig2, sig4};
 use stickslip_scene::shown::first_of;
 

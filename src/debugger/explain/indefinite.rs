@@ -8,9 +8,9 @@ use super::diagnosis::{answer_words, condition_words};
 use stickslip_core::interface::census::search;
 use stickslip_core::interface::definite::Compliance;
 use stickslip_core::interface::lemke::{Lemke, PathEnd, STARTS};
-use stickslip_core::interface::problem::{Answer, AssumedMode};
+use stickslip_core::interface::problem::Answer;
 use stickslip_core::strategy::{in_force, method, rungs};
-use stickslip_core::{InterfaceProblem, Strategy, Trials};
+use stickslip_core::{AssumedMode, InterfaceProblem, Strategy, Trials};
 use stickslip_scene::number::sig4;
 
 /// Negative eigenvalues up to this fraction of the largest one may be due to rounding.

@@ -6,10 +6,11 @@
 //! its row j. Then the solutions differ by exactly `Σ_j M⁻¹ e_j δ_j`: each term is the effect of node j's
 //! change.
 
-use stickslip_core::contact::table1::{Equation, RelativeMotion};
-use stickslip_core::interface::kinematics::NodeIncrement;
 use stickslip_core::interface::rows;
-use stickslip_core::{ContactState, InterfaceProblem, Intervention, Mode, State, Stepper, Trials};
+use stickslip_core::{
+    ContactState, Equation, InterfaceProblem, Intervention, Mode, NodeIncrement, RelativeMotion,
+    State, Stepper, Trials,
+};
 
 /// Effect of one node's change on another node.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

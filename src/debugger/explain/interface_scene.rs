@@ -4,12 +4,10 @@
 use super::names;
 use std::sync::Arc;
 use stickslip_core::model::InitialState;
-use stickslip_core::step::solver::ReportedForm;
-use stickslip_core::{Mode, Model, ReportedProblem, State, Stepper, Strategy};
-use stickslip_scene::Scene;
-use stickslip_scene::format::SceneError;
+use stickslip_core::{Mode, Model, ReportedForm, ReportedProblem, State, Stepper, Strategy};
 use stickslip_scene::format::condensed::{Contact, Matrix, Problem};
 use stickslip_scene::limits;
+use stickslip_scene::{Scene, SceneError};
 
 /// The scene of a reported problem, starting with the modes of a state.
 pub fn problem(model: &Model, state: &State, posed: &ReportedProblem) -> Problem {

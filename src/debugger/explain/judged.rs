@@ -1,8 +1,7 @@
 //! Describes the judge's findings: the law, the node, the amount.
 
 use crate::explain::names::slave;
-use stickslip_core::Model;
-use stickslip_core::contact::laws::{Finding, JudgedLaw, JudgedNumbers};
+use stickslip_core::{Finding, JudgedLaw, JudgedNumbers, Model};
 use stickslip_scene::number::{sig2, sig4, significant};
 
 /// A finding, as part of a sentence.

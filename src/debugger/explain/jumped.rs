@@ -1,8 +1,6 @@
 //! Describes jumps to another branch of equilibrium, and loss of stability.
 
-use stickslip_core::linear::stability::Stability;
-use stickslip_core::step::watch::StabilityLoss;
-use stickslip_core::{Event, Model};
+use stickslip_core::{Event, Model, Stability, StabilityLoss};
 use stickslip_scene::number::{shortest, sig2, sig4};
 
 /// The motions that lead away from an unstable state.

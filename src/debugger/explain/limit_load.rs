@@ -17,12 +17,12 @@ use super::{names, strain};
 use std::collections::HashSet;
 use std::ops::ControlFlow;
 use std::sync::Arc;
-use stickslip_core::fem::deformation::PointDeformation;
-use stickslip_core::linear::singular::RigidMotion;
 use stickslip_core::model::Body;
+use stickslip_core::plane::max_abs;
 use stickslip_core::step::arc_state::Change;
 use stickslip_core::{
-    ContactRecord, Failure, Mode, Model, Outcome, RunEnd, Singular, State, Stepper, Until,
+    ContactRecord, Failure, Mode, Model, Outcome, PointDeformation, RigidMotion, RunEnd, Singular,
+    State, Stepper, Until,
 };
 use stickslip_scene::number::{sig4, sig6};
 use stickslip_scene::shown::first_of;
@@ -75,7 +75,7 @@ fn largest_load(
     let model = stepper.model().clone();
     let along = state.along_path(&model, FIRST_STEP * model.length)?;
     let ahead = along.way.as_ref()?.ahead;
-    let largest = model.path.iter().fold(0.0_f64, |m, p| m.max(p.abs()));
+    let largest = max_abs(&model.path);
     let (mut best, mut steps) = (state.start.load_factor, 0);
     let mut last: Option<PathPoint> = None;
     stepper.restore(&along);

@@ -4,9 +4,8 @@
 use super::failures;
 use std::mem::discriminant;
 use std::ops::ControlFlow;
-use stickslip_core::step::event::MotionEvent;
 use stickslip_core::{
-    Failure, Intervention, Model, Outcome, RunEnd, Singular, State, Stepper, Until,
+    Failure, Intervention, Model, MotionEvent, Outcome, RunEnd, Singular, State, Stepper, Until,
 };
 use stickslip_scene::number::{shortest, sig2, sig6};
 

@@ -5,13 +5,11 @@ use super::attempt::{Attempt, Major};
 use super::cycles::place;
 use super::facts::{Fact, Part};
 use super::names::{mode, slave};
-use stickslip_core::contact::element::SurfaceElement;
-use stickslip_core::contact::projection::SurfacePoint;
 use stickslip_core::model::{Geometry, ResidualMethod};
-use stickslip_core::plane::{cross, dot};
-use stickslip_core::step::major_history::{MajorCycle, Stop};
+use stickslip_core::plane::{cross, distance, dot};
+use stickslip_core::step::major_history::Stop;
 use stickslip_core::words::counted;
-use stickslip_core::{Mode, Model, Settings, State};
+use stickslip_core::{MajorCycle, Mode, Model, Settings, State, SurfaceElement, SurfacePoint};
 use stickslip_scene::number::{sig2, sig4};
 use stickslip_scene::shown::first_of;
 
@@ -195,9 +193,7 @@ fn moved(model: &Model, around: &[Major], node: usize) -> f64 {
     let pairs = places
         .iter()
         .flat_map(|a| places.iter().map(move |b| (a, b)));
-    pairs
-        .map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1]))
-        .fold(0.0, f64::max)
+    pairs.map(|(a, b)| distance(*a, *b)).fold(0.0, f64::max)
 }
 
 /// The last residuals, in one line.
@@ -325,7 +321,7 @@ pub fn flight_words(model: &Model, state: &State, attempt: &Attempt) -> Vec<Fact
             model.place(&state.u, node),
             model.place(&state.start.u, node),
         );
-        (now[0] - then[0]).hypot(now[1] - then[1])
+        distance(now, then)
     };
     let nodes = model.bodies.iter().flat_map(|body| &body.nodes).copied();
     let furthest = nodes.max_by(|a, b| way(*a).total_cmp(&way(*b)));

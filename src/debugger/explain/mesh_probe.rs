@@ -3,7 +3,7 @@
 
 use super::restart::{Restart, changed, restart};
 use stickslip_core::State;
-use stickslip_scene::format::spec::Spec;
+use stickslip_scene::Spec;
 
 /// Result of the trial.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,11 +1,10 @@
 //! The shape of a state as lines, for all front ends that draw it: node positions, curves of elements, the
 //! visible extent, and clipping.
 
-use stickslip_core::contact::element::SurfaceElement;
 use stickslip_core::fem::lagrange;
 use stickslip_core::model::{Body, BodyKind};
 use stickslip_core::plane::minus;
-use stickslip_core::{Event, Model};
+use stickslip_core::{Event, Model, SurfaceElement};
 
 /// A point in the scene or on the sheet.
 pub type Point = [f64; 2];

@@ -26,11 +26,10 @@ use super::rigid_motion::loose;
 use super::strain::MaterialCause;
 use super::try_list::{self, TryLine, TryOutcome, helps};
 use stickslip_core::interface::census::MOST;
-use stickslip_core::interface::method::NotFound;
 use stickslip_core::model::{Body, BodyKind, FinishedRun, InitialGaps};
 use stickslip_core::words::counted;
-use stickslip_core::{Failure, Model, Norms, Singular, State, Status, Stepper};
-use stickslip_scene::format::spec::Spec;
+use stickslip_core::{Failure, Model, Norms, NotFound, Singular, State, Status, Stepper};
+use stickslip_scene::Spec;
 use stickslip_scene::gaps::turned;
 use stickslip_scene::number::{sig2, sig4};
 

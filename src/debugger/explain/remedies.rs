@@ -10,16 +10,14 @@ use super::restart;
 use super::tested::Dimension;
 use std::cmp::Ordering;
 use std::ops::ControlFlow;
-use stickslip_core::contact::laws::JudgedLaw;
-use stickslip_core::interface::method::NotFound;
 use stickslip_core::step::drive::drive;
 use stickslip_core::{
-    Capabilities, ContactRecord, Event, Failure, Forced, Intervention, Mode, Model, Norms, Outcome,
-    RunEnd, Solver, State, Status, Stepper, Strategy, Until,
+    Capabilities, ContactRecord, Event, Failure, Forced, Intervention, JudgedLaw, Mode, Model,
+    Norms, NotFound, Outcome, RunEnd, Solver, State, Status, Stepper, Strategy, Until,
 };
 use stickslip_platform::clock::Instant;
+use stickslip_scene::Spec;
 use stickslip_scene::format::paths;
-use stickslip_scene::format::spec::Spec;
 
 /// Maximum number of minor iterations of a trial.
 pub const BUDGET: u32 = 400;

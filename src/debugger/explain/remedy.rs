@@ -10,11 +10,12 @@ use super::names;
 use super::strain::{self, MaterialCause};
 use stickslip_core::contact::projection::projection_at;
 use stickslip_core::model::{
-    AtCycle, BoundUpdate, Geometry, InitialGaps, Jumps, ResidualMethod, SearchMode, Sticking, Touch,
+    AtCycle, Geometry, InitialGaps, Jumps, ResidualMethod, SearchMode, Sticking, Touch,
 };
 use stickslip_core::step::intervene::{Start, Value};
-use stickslip_core::step::solver::Parameter;
-use stickslip_core::{Failure, Intervention, Mode, Model, Settings, State, Strategy};
+use stickslip_core::{
+    BoundUpdate, Failure, Intervention, Mode, Model, Parameter, Settings, State, Strategy,
+};
 use stickslip_scene::gaps::{StartGaps, start_gaps, turned};
 use stickslip_scene::number;
 

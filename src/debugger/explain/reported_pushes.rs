@@ -14,11 +14,9 @@ use super::influence::{NodePush, left_side, spread};
 use super::interface_scene;
 use nalgebra::DVector;
 use std::sync::Arc;
-use stickslip_core::contact::table1::{Equation, RelativeMotion};
-use stickslip_core::interface::kinematics::NodeIncrement;
-use stickslip_core::model::BoundUpdate;
 use stickslip_core::{
-    Capabilities, ContactRecord, Event, Mode, Model, ReportedProblem, RewindSupport, State, Trials,
+    BoundUpdate, Capabilities, ContactRecord, Equation, Event, Mode, Model, NodeIncrement,
+    RelativeMotion, ReportedProblem, RewindSupport, State, Trials,
 };
 
 /// Maximum number of contacts for which the problem is requested in every iteration, because it is sent as text

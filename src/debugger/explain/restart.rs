@@ -6,8 +6,7 @@ use std::sync::Arc;
 use stickslip_core::{
     Failure, Intervention, Outcome, RunEnd, Settings, State, Status, Stepper, Until,
 };
-use stickslip_scene::Scene;
-use stickslip_scene::format::spec::Spec;
+use stickslip_scene::{Scene, Spec};
 
 /// Maximum number of minor iterations in the trial.
 const BUDGET: u64 = 4000;

@@ -6,10 +6,10 @@ use super::names::slave;
 use std::collections::HashSet;
 use stickslip_core::contact::projection::{Projection, projection_at, tangent};
 use stickslip_core::fem::pressure::Pressures;
-use stickslip_core::linear::singular::{LooseMotion, RigidMotion};
+use stickslip_core::linear::singular::LooseMotion;
 use stickslip_core::model::Factor;
 use stickslip_core::plane::dot;
-use stickslip_core::{Mode, Model, Singular, State, Stepper};
+use stickslip_core::{Mode, Model, RigidMotion, Singular, State, Stepper};
 use stickslip_scene::number::{shortest, sig4};
 use stickslip_scene::shown::first_of;
 

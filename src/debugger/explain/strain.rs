@@ -1,9 +1,9 @@
 //! Describes solids outside the range of their material law: the element, its deformation, and a suitable law
 //! ([`stickslip_core::fem::deformation`]).
 
-use stickslip_core::fem::deformation::{Deformation, PointDeformation, StretchRange, deformation};
+use stickslip_core::fem::deformation::{StretchRange, deformation};
 use stickslip_core::model::{BodyKind, Elastic, Law, Update};
-use stickslip_core::{Failure, Model, State};
+use stickslip_core::{Deformation, Failure, Model, PointDeformation, State};
 use stickslip_scene::number::sig4;
 
 /// Displacements beyond this multiple of the scene's length are meaningless as a shape.

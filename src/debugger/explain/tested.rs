@@ -1,7 +1,7 @@
 //! The quantities that Table 2 tests: their names and dimensions, and how a change of another node affects them.
 
 use super::influence::Influence;
-use stickslip_core::contact::table2::{Decision, TestedQuantity};
+use stickslip_core::{Decision, TestedQuantity};
 
 /// Dimension of a tested quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

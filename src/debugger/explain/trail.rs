@@ -1,7 +1,6 @@
 //! The last iterations of one contact: its force in the Coulomb cone, and T_max as a map from the value used to the value found.
 
-use stickslip_core::model::Friction;
-use stickslip_core::{Event, Mode};
+use stickslip_core::{Event, Friction, Mode};
 
 /// Maximum number of iterations in a trail.
 pub const LONGEST: usize = 12;

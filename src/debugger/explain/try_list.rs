@@ -2,7 +2,7 @@
 
 use super::remedies::{self, BUDGET, RemedyTrial, TrialEnd, compare};
 use super::remedy::{Remedy, RemedyInput};
-use stickslip_core::model::RunFinding;
+use stickslip_core::RunFinding;
 use stickslip_core::words::counted;
 
 /// Outcome of a line of the list.

@@ -1,8 +1,7 @@
 //! Branches: their names, their cost, and where they accepted increments.
 
 use crate::explain::names;
-use crate::history::strip::Strip;
-use crate::history::tree::Tree;
+use crate::{Strip, Tree};
 use stickslip_core::{Intervention, Model};
 
 /// Cost of a part of the history.

@@ -4,7 +4,7 @@
 //! discarded, so running backward finds exactly the points where running forward stopped, without solving.
 
 use crate::explain::names;
-use crate::history::strip::{PointKind, Strip};
+use crate::{PointKind, Strip};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;

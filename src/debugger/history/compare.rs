@@ -8,9 +8,7 @@
 
 use crate::explain::names;
 use crate::history::branches::{self, Cost};
-use crate::history::frame::Frame;
-use crate::history::strip::Strip;
-use crate::history::tree::Tree;
+use crate::{Frame, Strip, Tree};
 use stickslip_core::{Mode, Model, Position};
 use stickslip_scene::number::{shortest, sig2};
 use stickslip_scene::shown::first_of;

@@ -12,12 +12,12 @@
 //! whole. [`Budget::branches`] limits those frames and the strips; beyond it no new branch can start.
 
 use crate::explain::model_facts::ModelFacts;
-use crate::history::frame::Frame;
-use crate::history::strip::{PointKind, Strip};
+use crate::{Frame, PointKind, Strip};
 use std::collections::HashMap;
 use std::sync::Arc;
-use stickslip_core::step::state::IncrementStart;
-use stickslip_core::{ContactRecord, ContactState, Event, Intervention, Model, State};
+use stickslip_core::{
+    ContactRecord, ContactState, Event, IncrementStart, Intervention, Model, State,
+};
 
 /// Limits of the memory that a history takes, in bytes.
 #[derive(Debug, Clone, Copy)]

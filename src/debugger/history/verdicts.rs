@@ -4,8 +4,7 @@ use super::branches::{Cost, cost, name};
 use super::compare::{self, Sameness};
 use super::strip::PointKind;
 use super::tree::Tree;
-use stickslip_core::interface::minor_history::Cycle;
-use stickslip_core::{Failure, Outcome, Position};
+use stickslip_core::{Cycle, Failure, Outcome, Position};
 use stickslip_scene::number::shortest;
 
 /// How a branch ends so far. Branches are numbers in [`Tree::branches`].

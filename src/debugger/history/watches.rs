@@ -1,7 +1,7 @@
 //! Watches: named quantities of the shown state.
 
+use crate::Frame;
 use crate::explain::names;
-use crate::history::frame::Frame;
 use serde::{Deserialize, Serialize};
 use stickslip_core::Model;
 

@@ -1,8 +1,7 @@
 //! The commands that a session executes and journals record.
 
 use crate::history::breakpoints::Condition;
-use crate::history::strip::PointKind;
-use crate::history::watches::Watch;
+use crate::{PointKind, Watch};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use stickslip_core::step::intervene::Start;

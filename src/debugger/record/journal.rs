@@ -8,8 +8,8 @@
 //! only passed to the system. Nothing is lost if the process is killed; a power failure can lose cursor moves.
 //! A killed process leaves an incomplete last line, which is dropped and reported.
 
+use crate::Command;
 use crate::record::bits;
-use crate::record::command::Command;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::fmt::Write as _;
@@ -21,9 +21,9 @@ use stickslip_exchange::seal::Digest;
 use stickslip_platform::disk::File;
 use stickslip_platform::input::{self, RECORD_BYTES};
 use stickslip_platform::{clock, disk, files, system};
-use stickslip_scene::Scene;
-use stickslip_scene::format::{SceneError, Spec, notation, read};
-use stickslip_scene::readers::{FileKind, or_mistaken};
+use stickslip_scene::format::{notation, read};
+use stickslip_scene::readers::or_mistaken;
+use stickslip_scene::{FileKind, Scene, SceneError, Spec};
 
 /// Format version written by this program, and the only one it reads.
 pub const FORMAT: u32 = 1;

@@ -18,10 +18,10 @@ use stickslip_core::{
 use stickslip_platform::disk;
 use stickslip_platform::files::{self, FileError};
 use stickslip_platform::input::{self, RECORD_BYTES};
-use stickslip_scene::Scene;
-use stickslip_scene::format::{SceneError, Spec, notation, read};
-use stickslip_scene::readers::{FileKind, or_mistaken};
+use stickslip_scene::format::{notation, read};
+use stickslip_scene::readers::or_mistaken;
 use stickslip_scene::solver::any_solver;
+use stickslip_scene::{FileKind, Scene, SceneError, Spec};
 
 /// Format version written by this program, and the only one it reads.
 pub const FORMAT: u32 = 1;

@@ -1,8 +1,8 @@
 //! A journal as readable text: what the user did and what happened.
 
 use crate::explain::names;
-use crate::record::command::{BranchTarget, Command, Unit};
 use crate::record::journal::{Entry, JournalError, Record, date};
+use crate::{BranchTarget, Command, Unit};
 use stickslip_core::Model;
 use stickslip_core::words::counted;
 

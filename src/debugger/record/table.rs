@@ -34,10 +34,8 @@ use crate::explain::names;
 use crate::history::strip::norms_after;
 use std::fmt::Write;
 use stickslip_core::fem::deformation::deformation;
-use stickslip_core::linear::stability::Stability;
-use stickslip_core::model::{Control, Friction, Jumps, Monitor, MonitorQuantity, ReportedKind};
-use stickslip_core::step::recovery::motion::Motion;
-use stickslip_core::{ContactRecord, Event, Failure, Model, Outcome};
+use stickslip_core::model::{Control, Jumps, Monitor, MonitorQuantity, ReportedKind};
+use stickslip_core::{ContactRecord, Event, Failure, Friction, Model, Motion, Outcome, Stability};
 use stickslip_study::csv::field;
 
 /// The first line of `--csv`.

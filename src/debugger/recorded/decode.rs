@@ -9,19 +9,16 @@ use serde::Deserialize;
 use serde::de::IntoDeserializer;
 use serde::de::value::{Error as NoName, StrDeserializer};
 use std::sync::Arc;
-use stickslip_core::contact::projection::SurfacePoint;
-use stickslip_core::contact::record::{ContactRecord, Forced};
-use stickslip_core::contact::table2::{
-    Decision, Entry, Numbers, Rule, Test, TestedQuantity, Ties, decide,
-};
+use stickslip_core::contact::table2::{Entry, decide};
 use stickslip_core::interface::method::NodeContext;
-use stickslip_core::linear::norms::Norms;
-use stickslip_core::model::{Friction, Mode, Model, Strategy};
-use stickslip_core::step::event::{Event, Failure, Frame, Outcome, Position, Words};
+use stickslip_core::step::event::{Frame, Words};
 use stickslip_core::step::judged::{self, ReferenceSizes};
-use stickslip_core::step::state::State;
 use stickslip_core::strategy::method;
 use stickslip_core::words::counted;
+use stickslip_core::{
+    ContactRecord, Decision, Event, Failure, Forced, Friction, Mode, Model, Norms, Numbers,
+    Outcome, Position, Rule, State, Strategy, SurfacePoint, Test, TestedQuantity, Ties,
+};
 use stickslip_exchange::attach::message::{
     self, Components, ContactResult, Decides, EndedLevel, Id,
 };

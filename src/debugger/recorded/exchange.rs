@@ -10,20 +10,17 @@ use super::orders;
 use std::collections::HashMap;
 use std::path::Path;
 use std::sync::Arc;
-use stickslip_core::model::Model;
-use stickslip_core::step::event::Event;
-use stickslip_core::step::intervene::{Intervention, Refusal};
-use stickslip_core::step::solver::{Capabilities, Now, RewindSupport, Solver, SolverLost};
-use stickslip_core::step::state::State;
-use stickslip_core::step::stored_states::StoredStates;
+use stickslip_core::{
+    Capabilities, Event, Intervention, Model, Now, Refusal, RewindSupport, Solver, SolverLost,
+    State, StoredStates,
+};
+use stickslip_exchange::FormatError;
 use stickslip_exchange::attach::conversation::STARTED;
 use stickslip_exchange::attach::message::{self, ContactResult, Hello, Id};
 use stickslip_exchange::attach::{Answer, Request, Side, TranscriptLine};
-use stickslip_exchange::format_error::FormatError;
 use stickslip_platform::input::{self, Unreadable};
-use stickslip_scene::Scene;
-use stickslip_scene::format::{SceneError, read};
-use stickslip_scene::readers::FileKind;
+use stickslip_scene::format::read;
+use stickslip_scene::{FileKind, Scene, SceneError};
 
 /// Steps from the start: an iteration (`None`) or an intervention each.
 pub type Line = Vec<Option<Intervention>>;

@@ -1,8 +1,8 @@
 //! Converts interventions into requests to a solver, and the requests of an exchange back into interventions.
 
-use stickslip_core::model::{Friction, Mode};
-use stickslip_core::step::intervene::{self, Intervention};
-use stickslip_core::step::solver::{Capabilities, Range};
+use stickslip_core::step::intervene;
+use stickslip_core::step::solver::Range;
+use stickslip_core::{Capabilities, Friction, Intervention, Mode};
 use stickslip_exchange::attach::Request;
 use stickslip_exchange::attach::message::Id;
 

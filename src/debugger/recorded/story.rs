@@ -2,12 +2,11 @@
 
 use super::exchange::{Line, OpenedExchange};
 use super::log::LogOrigin;
+use crate::Strip;
 use crate::explain::{names, report};
 use crate::history::rounds::{Rounds, rounds, words};
-use crate::history::strip::Strip;
 use std::fmt::Write;
-use stickslip_core::model::Model;
-use stickslip_core::step::solver::Solver;
+use stickslip_core::{Model, Solver};
 use stickslip_exchange::attach::message::Level;
 
 /// Maximum number of contacts named, and of messages shown.

@@ -25,20 +25,20 @@ use super::trials::try_remedies;
 use super::worker::Lender;
 use super::worst_points::{WorstPoints, worst_point};
 use crate::explain::examination::examine_nodes;
-use crate::explain::influence::{NodePush, PushPath, between, pushed, pushes};
-use crate::explain::page::{DiagnosisPage, page};
-use crate::explain::remedies::{self, RemedyTrial};
+use crate::explain::influence::{PushPath, between, pushed, pushes};
+use crate::explain::page::page;
+use crate::explain::remedies;
 use crate::explain::reported_pushes;
-use crate::record::export::export_state::ExportError;
+use crate::{DiagnosisPage, ExportError, NodePush, RemedyTrial};
 use std::collections::HashMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
-use stickslip_core::fem::deformation::PointDeformation;
-use stickslip_core::linear::estimate::Estimate;
-use stickslip_core::{Capabilities, Model, ReportedProblem, State, Stepper};
+use stickslip_core::{
+    Capabilities, Estimate, Model, PointDeformation, ReportedProblem, State, Stepper,
+};
 use stickslip_platform::task::{self, Next};
-use stickslip_scene::format::spec::Spec;
+use stickslip_scene::Spec;
 use stickslip_scene::solver::solver;
 
 /// Maximum number of cached entries, for pushes and for examinations separately.

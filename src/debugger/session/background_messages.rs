@@ -1,15 +1,11 @@
 //! What the session and its background thread send each other.
 
 use super::exports::Export;
-use crate::explain::influence::{NodePush, PushPath};
-use crate::explain::page::DiagnosisPage;
-use crate::explain::remedies::RemedyTrial;
+use crate::explain::influence::PushPath;
 use crate::explain::reported_pushes::Iterations;
-use crate::explain::walk::ReportedIterations;
-use crate::record::export::export_state::ExportError;
+use crate::{DiagnosisPage, ExportError, NodePush, RemedyTrial, ReportedIterations};
 use std::sync::Arc;
-use stickslip_core::State;
-use stickslip_core::fem::deformation::PointDeformation;
+use stickslip_core::{PointDeformation, State};
 
 /// Position: branch, and step on its line.
 pub type LinePlace = (usize, usize);

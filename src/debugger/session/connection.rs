@@ -2,12 +2,10 @@
 
 use super::refusal::Refusal;
 use super::timeline::Timeline;
-use crate::history::strip::Strip;
-use crate::recorded::log::Log;
-use stickslip_core::model::Friction;
+use crate::{Log, Strip};
 use stickslip_core::step::state::Controls;
 use stickslip_core::words::counted;
-use stickslip_core::{Capabilities, Intervention, RewindSupport, State};
+use stickslip_core::{Capabilities, Friction, Intervention, RewindSupport, State};
 
 /// A solver as its session sees it.
 pub struct Connection {

@@ -1,12 +1,12 @@
 //! The scene with the changes made during a run, and further changes of its scalars.
 
 use super::refusal::Refusal;
-use stickslip_core::Intervention;
-use stickslip_core::model::{Contact, Friction};
+use stickslip_core::model::Contact;
 use stickslip_core::step::state::Controls;
-use stickslip_scene::Scene;
+use stickslip_core::{Friction, Intervention};
 use stickslip_scene::format::contact_law::FrictionSpec;
-use stickslip_scene::format::{Spec, paths};
+use stickslip_scene::format::paths;
+use stickslip_scene::{Scene, Spec};
 
 /// Relative difference below which two values are equal except for round-off.
 const SAME: f64 = 1e-12;

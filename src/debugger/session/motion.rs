@@ -3,8 +3,7 @@
 use super::machine::{Session, Task};
 use super::refusal::Refusal;
 use super::worker::Steps;
-use crate::history::breakpoints::Breakpoints;
-use crate::record::command::Unit;
+use crate::{Breakpoints, Unit};
 use stickslip_core::Status;
 use stickslip_core::words::counted;
 

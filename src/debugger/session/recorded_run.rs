@@ -3,11 +3,10 @@
 
 use super::machine::Session;
 use crate::history::branches;
-use crate::history::strip::{PointKind, Strip};
 use crate::recorded::calculix::{self, RecordedRun};
 use crate::recorded::exchange::{Line, OpenedExchange};
-use crate::recorded::recording::Recording;
 use crate::recorded::story::in_common;
+use crate::{PointKind, Recording, Strip};
 use stickslip_scene::Scene;
 
 impl Session {

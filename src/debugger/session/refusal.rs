@@ -3,9 +3,8 @@
 use crate::history::branches::NoBranch;
 use crate::history::breakpoints::NoBreakpoint;
 use crate::history::watches::WatchError;
-use crate::record::export::export_state::ExportError;
 use crate::record::journal::JournalError;
-use crate::record::snapshot::SnapshotError;
+use crate::{ExportError, SnapshotError};
 use stickslip_core::words::counted;
 use stickslip_platform::files::FileError;
 use stickslip_scene::format::error::SetError;

@@ -2,9 +2,8 @@
 
 use super::machine::Session;
 use super::refusal::Departure;
-use crate::history::breakpoints::Breakpoints;
-use crate::record::command::Unit;
-use crate::record::journal::{self, Entry, Journal, JournalError, JournalTarget, Record};
+use crate::record::journal::{self, Entry, Journal, JournalError, Record};
+use crate::{Breakpoints, JournalTarget, Unit};
 use stickslip_scene::shown;
 
 impl Session {

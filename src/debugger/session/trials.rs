@@ -1,12 +1,13 @@
 //! Trials of remedies on the background thread.
 
 use super::background_messages::BackgroundReply;
-use crate::explain::remedies::{self, RemedyTrial};
+use crate::RemedyTrial;
+use crate::explain::remedies;
 use crate::explain::remedy::Remedy;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::Sender;
 use stickslip_core::{State, Stepper};
-use stickslip_scene::format::spec::Spec;
+use stickslip_scene::Spec;
 
 /// Tries every remedy from a state.
 pub(super) fn try_remedies(

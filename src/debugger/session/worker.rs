@@ -1,10 +1,7 @@
 //! The thread that runs the session's solver, our own or an attached one.
 
-use crate::history::breakpoints::Breakpoints;
-use crate::history::frame::Frame;
 use crate::history::rounds;
-use crate::history::strip::Strip;
-use crate::record::command::Unit;
+use crate::{Breakpoints, Frame, Strip, Unit};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};

@@ -2,8 +2,8 @@
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Weak};
-use stickslip_core::Model;
-use stickslip_core::fem::deformation::{PointDeformation, deformation};
+use stickslip_core::fem::deformation::deformation;
+use stickslip_core::{Model, PointDeformation};
 
 /// Number of displacement fields whose worst points are kept.
 const KEPT: usize = 64;

@@ -2,23 +2,16 @@
 
 use super::refusal::LessonError;
 use super::runs::Runs;
-use crate::history::frame::Frame;
+use crate::Frame;
 use crate::history::strip::norms_after;
 use std::convert::Infallible;
 use std::ops::ControlFlow;
 use std::sync::Arc;
-use stickslip_core::contact::laws::Verdict;
-use stickslip_core::contact::record::ContactRecord;
-use stickslip_core::contact::state::ContactState;
 use stickslip_core::interface::census::census;
-use stickslip_core::interface::minor_history::Cycle;
-use stickslip_core::interface::trials::Trials;
-use stickslip_core::linear::stability::Stability;
-use stickslip_core::model::{Mode, Model};
-use stickslip_core::step::drive::{RunEnd, Until};
-use stickslip_core::step::event::{Event, Failure, Outcome};
-use stickslip_core::step::intervene::Intervention;
-use stickslip_core::step::stepper::Stepper;
+use stickslip_core::{
+    ContactRecord, ContactState, Cycle, Event, Failure, Intervention, Mode, Model, Outcome, RunEnd,
+    Stability, Stepper, Trials, Until, Verdict,
+};
 
 /// Decimal digits of an increment to which the load of a change of mode is found.
 const DIGITS: u32 = 4;

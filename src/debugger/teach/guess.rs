@@ -4,10 +4,9 @@ use super::refusal::LessonRefusal;
 use crate::action::{Action, HiddenDecisions, mode};
 use crate::explain::names;
 use crate::explain::report;
-use crate::history::frame::Frame;
-use crate::record::command::Command;
+use crate::{Command, Frame};
 use std::collections::{BTreeMap, BTreeSet};
-use stickslip_core::model::{Mode, Model};
+use stickslip_core::{Mode, Model};
 
 /// Predictions, and which decisions are hidden.
 #[derive(Debug, Clone)]

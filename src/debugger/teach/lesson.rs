@@ -5,20 +5,20 @@ use super::refusal::PressError;
 use super::runs::Runs;
 use super::spec::{AnswerSpec, LessonSpec, SceneSpec, StepSpec, When};
 use super::task::{Goal, LessonTask};
+use crate::Command;
 use crate::action::{self, Action, Context};
-use crate::record::command::Command;
 use crate::recorded::exchange;
 use std::borrow::Cow;
 use std::sync::Arc;
-use stickslip_core::contact::laws::JudgedLaw;
-use stickslip_core::model::{Mode, Model};
+use stickslip_core::{JudgedLaw, Mode, Model};
 use stickslip_platform::disk;
-use stickslip_scene::embedded::{self, EmbeddedFile};
+use stickslip_scene::embedded;
 use stickslip_scene::embedded_all;
-use stickslip_scene::format::error::{AtPath, Path, SceneError, at, bail, did_you_mean, fault};
+use stickslip_scene::format::error::{AtPath, Path, at, bail, did_you_mean, fault};
 use stickslip_scene::format::{Fault, read};
-use stickslip_scene::readers::{FileKind, or_mistaken};
-use stickslip_scene::scene::{Scene, placed};
+use stickslip_scene::readers::or_mistaken;
+use stickslip_scene::scene::placed;
+use stickslip_scene::{EmbeddedFile, FileKind, Scene, SceneError};
 use stickslip_study::Vary;
 
 /// A lesson that matches its scene.

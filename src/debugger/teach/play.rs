@@ -7,12 +7,10 @@ use super::refusal::{LessonRefusal, PlaybackError};
 use super::tutor::Tutor;
 use crate::action::Action;
 use crate::explain::names;
-use crate::record::command::{Command, Unit};
 use crate::recorded::exchange;
-use crate::recorded::recording::Recording;
-use crate::session::Session;
+use crate::{Command, Recording, Session, Unit};
 use std::sync::Arc;
-use stickslip_scene::format::SceneError;
+use stickslip_scene::SceneError;
 use stickslip_scene::number::sig4;
 
 /// Maximum number of minor iterations that provide the predictions of a step.

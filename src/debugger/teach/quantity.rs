@@ -13,12 +13,12 @@
 
 use super::frame_values::FrameValues;
 use super::refusal::LessonError;
+use crate::RoundOff;
 use crate::action::{self, Context};
 use crate::explain::judged;
 use crate::explain::names;
 use crate::explain::report;
-use crate::explain::round_off::RoundOff;
-use stickslip_core::model::Mode;
+use stickslip_core::Mode;
 use stickslip_scene::number::sig4;
 
 /// A quantity that the solver can provide.

@@ -8,9 +8,7 @@ use crate::action;
 use crate::explain::names::{self, MODES, TABLE_2};
 use crate::explain::report;
 use crate::explain::tested;
-use stickslip_core::contact::table2::{Decision, Rule, Test};
-use stickslip_core::linear::stability::Stability;
-use stickslip_core::model::Mode;
+use stickslip_core::{Decision, Mode, Rule, Stability, Test};
 use stickslip_scene::number::sig4;
 
 /// Relative difference below which numbers count as about the same.

@@ -20,8 +20,8 @@
 //! [`super::quantity`].
 
 use serde::Deserialize;
-use stickslip_core::model::Mode;
-use stickslip_scene::format::spec::Spec;
+use stickslip_core::Mode;
+use stickslip_scene::Spec;
 
 /// A lesson file.
 #[derive(Debug, Clone, PartialEq, Deserialize)]

@@ -3,12 +3,9 @@
 use super::frame_values::FrameValues;
 use super::quantity::Template;
 use super::spec::Aid;
+use crate::Frame;
 use crate::action::Action;
-use crate::history::frame::Frame;
-use stickslip_core::model::Strategy;
-use stickslip_core::step::event::Outcome;
-use stickslip_core::step::intervene::Intervention;
-use stickslip_core::step::state::Status;
+use stickslip_core::{Intervention, Outcome, Status, Strategy};
 use stickslip_scene::number::shortest;
 
 /// Relative difference of load factors that counts as none.

@@ -11,11 +11,10 @@ use super::lesson::{self, Answer, Ask, Lesson, LessonStep, Truth};
 use super::question::{AnswerKind, TutorQuestion};
 use super::refusal::LessonRefusal;
 use crate::action::{Action, HiddenDecisions};
-use crate::history::frame::Frame;
-use crate::record::command::Command;
+use crate::{Command, Frame};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
-use stickslip_core::step::state::Status;
+use stickslip_core::Status;
 
 /// What is recorded for a hint.
 const HINT: &str = "?";

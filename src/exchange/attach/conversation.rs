@@ -5,7 +5,7 @@
 //! verbatim, for people, scripts and [`TranscriptLine::read`]. Each line ends with its digest ([`crate::seal`]); files of earlier versions
 //! start with just [`HEAD`] and have no digests.
 
-use crate::format_error::FormatError;
+use crate::FormatError;
 use crate::seal::{self, Seal};
 
 /// Start of the first line.

@@ -4,7 +4,7 @@
 //! state of 1,000 contacts is 0.3 MB), and errors have a path in the message and a column in the line.
 
 use super::message::{Answer, MatrixMessage, Request};
-use crate::format_error::FormatError;
+use crate::FormatError;
 use serde::de::{self, Deserializer, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;

@@ -14,7 +14,7 @@
 
 use super::Stop;
 use super::lines::{Field, Lines, ResultLine};
-use crate::format_error::FormatError;
+use crate::FormatError;
 use std::collections::HashMap;
 use std::io::BufRead;
 use std::ops::Range;

@@ -7,7 +7,7 @@
 use super::Table;
 use super::cel::RunPosition;
 use super::lines::{Field, ResultLine, table};
-use crate::format_error::FormatError;
+use crate::FormatError;
 use std::io::BufRead;
 
 /// The numbers of an iteration.

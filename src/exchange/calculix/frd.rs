@@ -4,7 +4,7 @@
 //! ` -1` per node (number in columns 4 to 13, then values of 12 columns), and ends with ` -3`.
 
 use super::lines::{Lines, ResultLine};
-use crate::format_error::FormatError;
+use crate::FormatError;
 use std::io::BufRead;
 
 /// The nodes of the last contact data set with their pressures; empty if there is none.

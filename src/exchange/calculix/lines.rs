@@ -4,7 +4,7 @@
 //! does not fit its column.
 
 use super::Stop;
-use crate::format_error::FormatError;
+use crate::FormatError;
 use std::io::{BufRead, Read};
 
 /// Maximum length of a line in bytes; the longest line of CalculiX has 160.

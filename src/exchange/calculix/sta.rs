@@ -5,7 +5,7 @@
 
 use super::Table;
 use super::lines::{Field, ResultLine, table};
-use crate::format_error::FormatError;
+use crate::FormatError;
 use std::io::BufRead;
 
 /// A finished attempt.

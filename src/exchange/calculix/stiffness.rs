@@ -4,7 +4,7 @@
 //! of the .sti is an entry, `ROW COLUMN VALUE`, where rows and columns are line numbers of the .dof, from 1. The matrix is
 //! symmetric, and each pair of entries is stored once.
 
-use crate::format_error::FormatError;
+use crate::FormatError;
 use crate::problem::Matrix;
 use crate::words::Words;
 

@@ -1,6 +1,6 @@
 //! Replacement in a build without the feature `fclib`: rejects fclib files.
 
-use crate::format_error::FormatError;
+use crate::FormatError;
 use crate::problem::{Local, Problem};
 
 /// Whether this build reads and writes such files.

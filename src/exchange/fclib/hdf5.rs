@@ -10,7 +10,7 @@
 //! states the reverse, but CSparse, which it calls, and Siconos use this order). Other groups of a file, `solution` and
 //! `guesses`, are ignored.
 
-use crate::format_error::FormatError;
+use crate::FormatError;
 use crate::problem::{Bilateral, Global, Local, Matrix, Problem, is_there};
 use hdf5_pure::{Dataset, File, FileBuilder, GroupBuilder, LibVer};
 

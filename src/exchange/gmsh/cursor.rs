@@ -1,6 +1,6 @@
 //! A cursor in a file whose numbers are text or binary, as its header states.
 
-use crate::format_error::FormatError;
+use crate::FormatError;
 
 /// Number format of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -19,7 +19,7 @@ mod sections;
 mod v2;
 mod v4;
 
-use crate::format_error::FormatError;
+use crate::FormatError;
 use crate::mesh::Mesh;
 use cursor::Cursor;
 use sections::HEAD;

@@ -3,7 +3,7 @@
 use super::cursor::Cursor;
 use super::elements::{RawCell, RawNode};
 use super::groups::Groups;
-use crate::format_error::FormatError;
+use crate::FormatError;
 use crate::mesh::{Cell, Mesh};
 
 /// Nodes are in one plane if their z differ by at most this fraction of the extent in x and y.

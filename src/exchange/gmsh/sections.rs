@@ -3,7 +3,7 @@
 use super::cursor::{Cursor, CursorForm};
 use super::raw::TaggedMesh;
 use super::{v2, v4};
-use crate::format_error::FormatError;
+use crate::FormatError;
 
 /// Required start of a file.
 pub(super) const HEAD: &[u8] = b"$MeshFormat";

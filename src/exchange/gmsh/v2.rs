@@ -3,7 +3,7 @@
 use super::cursor::{Cursor, CursorForm};
 use super::elements::{RawCell, RawNode, kind};
 use super::raw::TaggedMesh;
-use crate::format_error::FormatError;
+use crate::FormatError;
 
 /// Reads `count`, then number, x, y, z of each node.
 pub(super) fn nodes(cursor: &mut Cursor<'_>, raw: &mut TaggedMesh) -> Result<(), FormatError> {

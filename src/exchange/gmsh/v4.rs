@@ -3,7 +3,7 @@
 use super::cursor::Cursor;
 use super::elements::{RawCell, RawNode, kind};
 use super::raw::TaggedMesh;
-use crate::format_error::FormatError;
+use crate::FormatError;
 
 /// Reads the physical groups of each geometric entity.
 pub(super) fn entities(cursor: &mut Cursor<'_>, raw: &mut TaggedMesh) -> Result<(), FormatError> {

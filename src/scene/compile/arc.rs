@@ -1,8 +1,8 @@
 //! Compiles the arc-length settings.
 
 use super::super::nodes::Names;
+use crate::Spec;
 use crate::format::error::{AtPath, Fault, Path, at, bail, fault, some_of};
-use crate::format::spec::Spec;
 use stickslip_core::model::{
     ArcLength, ArcMeasure, Bound, Contact, Control, InitialGaps, LinearSolver, Monitor,
     MonitorQuantity,

@@ -5,12 +5,13 @@
 
 use super::super::areas::{AreaSide, density, sides};
 use super::super::nodes::Names;
+use crate::Spec;
 use crate::format::error::{Fault, at, bail};
-use crate::format::spec::Spec;
-use stickslip_core::contact::element::SurfaceElement;
+use stickslip_core::SurfaceElement;
 use stickslip_core::contact::projection::{closest_point, projection_at};
 use stickslip_core::fem::lagrange::gauss;
 use stickslip_core::model::{Body, BodyKind, Contact, Node, Surface};
+use stickslip_core::plane::distance;
 
 /// Minimum number of points of a side. Only where a contact zone ends within a side do they matter (page `decks`): the extreme case
 /// is a ring with one element per side, whose forces scatter by 19 % with 3 to 12 points.
@@ -96,7 +97,7 @@ fn borders(
     let line = [Surface::new("", vec![side.nodes.to_vec()], false)];
     let corner = |node: Option<&usize>| node.map_or([f64::NAN; 2], |&node| places[node]);
     let [from, to] = [corner(side.nodes.first()), corner(side.nodes.last())];
-    let length = (to[0] - from[0]).hypot(to[1] - from[1]);
+    let length = distance(to, from);
     let elements = masters
         .iter()
         .map(|&surface| &surfaces[surface])
@@ -105,7 +106,7 @@ fn borders(
     let ends = elements.flat_map(|element| [element.first(), element.last()]);
     let over = ends.flatten().filter_map(|&node| {
         let at = places[node];
-        let is_near = (at[0] - from[0]).hypot(at[1] - from[1]) <= 2.0 * length;
+        let is_near = distance(at, from) <= 2.0 * length;
         let spot = is_near.then(|| closest_point(at, &line, &[0], places, None))??;
         let gap = projection_at(&line, spot, places, at).gap;
         (gap.abs() <= length).then_some(spot.xi)

@@ -1,15 +1,16 @@
 //! Interface problems in space: contacts side by side above a floor, in a square grid.
 
 use super::history;
+use crate::Spec;
 use crate::format::error::{Fault, at, bail};
 use crate::format::in_space::SpaceSpec;
-use crate::format::spec::Spec;
 use crate::limits;
 use crate::nodes::Names;
 use std::collections::HashSet;
 use std::sync::Arc;
 use stickslip_core::Model;
 use stickslip_core::model::{Contact, Node, SpaceProblem, Surface};
+use stickslip_core::plane::max_abs;
 use stickslip_core::words::counted;
 
 /// Checks a problem; the texts have been checked.
@@ -18,10 +19,7 @@ pub(super) fn compile(spec: &Spec, problem: &SpaceSpec) -> Result<(Model, Names)
     history::settings(&spec.settings)?;
     check(problem)?;
     let count = problem.contacts.len();
-    let longest = problem
-        .free
-        .iter()
-        .fold(0.0, |most: f64, q| most.max(q.abs()));
+    let longest = max_abs(&problem.free);
     let spacing = if longest > 0.0 { longest } else { 1.0 };
     let mut side = 1;
     while side * side < count {

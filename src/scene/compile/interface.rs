@@ -7,13 +7,15 @@ use super::super::nodes::Names;
 use super::super::nodes::checks::unique;
 use super::bodies::{chain, check_chain};
 use super::laws;
+use crate::Spec;
 use crate::format::contact_law::FrictionSpec;
 use crate::format::error::{Fault, Path, at, bail, none_called, quoted};
-use crate::format::spec::{Nodes, Side, SlaveSpec, Spec};
+use crate::format::spec::{Nodes, Side, SlaveSpec};
 use std::collections::HashSet;
+use stickslip_core::Friction;
 use stickslip_core::contact::element::closed;
 use stickslip_core::contact::smooth::smooth;
-use stickslip_core::model::{Component, Friction, InitialState};
+use stickslip_core::model::{Component, InitialState};
 use stickslip_core::model::{Contact, Dofs, Surface};
 
 /// The surfaces of a scene in list order, one per piece.

@@ -3,9 +3,10 @@
 use super::super::areas::tributary;
 use super::super::limits;
 use super::super::nodes::Names;
+use crate::Spec;
 use crate::format::contact_law::{ContactLaw, FrictionSpec};
 use crate::format::error::{Fault, Path, at, bail, fault};
-use crate::format::spec::{SlaveSpec, Spec};
+use crate::format::spec::SlaveSpec;
 use crate::number::sig4;
 use std::collections::HashSet;
 use stickslip_core::Mode;

@@ -3,8 +3,9 @@
 use super::super::limits;
 use super::super::nodes::Names;
 use super::{pressures, tractions, volumes};
+use crate::Spec;
 use crate::format::error::{AtPath, Fault, Path, at, bail, fault};
-use crate::format::spec::{LoadSpec, Point, Spec};
+use crate::format::spec::{LoadSpec, Point};
 use std::collections::HashMap;
 use stickslip_core::model::Component;
 use stickslip_core::model::{Body, Dofs, Factor, Load, Prescribed, Pressure};

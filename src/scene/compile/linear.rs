@@ -2,8 +2,9 @@
 
 use super::super::limits;
 use super::super::nodes::Names;
+use crate::Spec;
 use crate::format::error::{AtPath, Fault, Path, bail, fault};
-use crate::format::spec::{Bar, BodySpec, Spec};
+use crate::format::spec::{Bar, BodySpec};
 use std::collections::{BTreeMap, HashMap, HashSet};
 use stickslip_core::model::{Body, BodyKind, Dofs, Factor, Form, Linear, Load, Truss};
 use stickslip_core::plane::minus;

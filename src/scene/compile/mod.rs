@@ -24,15 +24,14 @@ use super::corners;
 use super::gaps;
 use super::limits;
 use super::nodes::Names;
+use crate::Spec;
 use crate::format::error::{Fault, at, bail};
-use crate::format::spec::Spec;
 pub use history::increments;
 use layout::Layout;
 pub(crate) use layout::Loads;
 pub(crate) use renewed::{Choices, Compiled, Groups, renewed};
-use stickslip_core::Model;
-use stickslip_core::linear::estimate::Estimate;
 use stickslip_core::model::{InitialGaps, diagonal};
+use stickslip_core::{Estimate, Model};
 
 /// Checks a scene.
 pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {

@@ -3,8 +3,9 @@
 use super::super::limits;
 use super::super::nodes::Names;
 use super::layout::no_rotation;
+use crate::Spec;
 use crate::format::error::{AtPath, Fault, Path, at, bail, fault, quoted, some_of};
-use crate::format::spec::{Quantity, Spec};
+use crate::format::spec::Quantity;
 use std::collections::HashMap;
 use stickslip_core::model::{Contact, Control, Dofs, Monitor, MonitorQuantity};
 

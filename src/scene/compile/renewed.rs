@@ -6,12 +6,12 @@ use super::super::nodes::Names;
 use super::layout::{Layout, Loads};
 use super::linear::free_motions;
 use super::{history, interface};
+use crate::Spec;
 use crate::format::error::{Path, Step};
 use crate::format::paths::ScalarPath;
-use crate::format::spec::{SlaveSpec, Spec};
-use stickslip_core::Model;
-use stickslip_core::linear::estimate::Estimate;
+use crate::format::spec::SlaveSpec;
 use stickslip_core::model::Control;
+use stickslip_core::{Estimate, Model};
 
 /// Settings that are used outside the solver too: they move nodes, create surfaces, or make the scene invalid.
 const DEEP: [&str; 4] = ["initial_gaps", "adjust_gap", "point_force", "memory"];

@@ -11,7 +11,9 @@ use crate::format::spec::{Nodes, SlaveSpec, SurfaceSpec};
 use crate::geometry::distance_to_segment;
 use crate::number::sig4;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
-use stickslip_core::model::{InitialGaps, Mode, SlavePoints};
+use stickslip_core::Mode;
+use stickslip_core::model::{InitialGaps, SlavePoints};
+use stickslip_core::plane::distance;
 use stickslip_exchange::inp::DeckLocation;
 use stickslip_exchange::inp::deck::{Adjust, Faces, Family, Normal, Pair, Tie};
 
@@ -479,10 +481,7 @@ impl DeckObjects<'_> {
             .iter()
             .flat_map(|side| side.windows(2).map(|pair| (at(&pair[0]), at(&pair[1]))))
             .collect();
-        let whole: f64 = lines
-            .iter()
-            .map(|(a, b)| (b[0] - a[0]).hypot(b[1] - a[1]))
-            .sum();
+        let whole: f64 = lines.iter().map(|(a, b)| distance(*b, *a)).sum();
         let tolerance = tie
             .tolerance
             .unwrap_or(TOLERANCE * whole / sides.len().max(1) as f64);

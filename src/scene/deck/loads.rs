@@ -52,6 +52,11 @@ impl DeckObjects<'_> {
         Ok(())
     }
 
+    fn add_load(&mut self, place: DeckLocation, load: LoadSpec) {
+        self.origin.note(at!["loads", self.spec.loads.len()], place);
+        self.spec.loads.push(load);
+    }
+
     /// The course of the value on each target: `values` lists target, value, amplitude and location. Unless `adds` is set, a
     /// later value of a step replaces an earlier one.
     fn courses<T: Ord>(
@@ -154,14 +159,15 @@ impl DeckObjects<'_> {
         self.supports(held);
         for group in moved {
             let node = self.group(&group.nodes, "MOVED");
-            self.origin
-                .note(at!["loads", self.spec.loads.len()], group.place);
-            self.spec.loads.push(LoadSpec::Displacement {
-                node,
-                component: component(group.direction),
-                value: group.value,
-                scale: group.scale,
-            });
+            self.add_load(
+                group.place,
+                LoadSpec::Displacement {
+                    node,
+                    component: component(group.direction),
+                    value: group.value,
+                    scale: group.scale,
+                },
+            );
         }
         Ok(())
     }
@@ -282,29 +288,30 @@ impl DeckObjects<'_> {
                 continue;
             }
             let name = self.node(node);
-            self.origin
-                .note(at!["loads", self.spec.loads.len()], course.place);
-            self.spec.loads.push(match direction {
-                Direction::Rotation => LoadSpec::Moment {
-                    node: name,
-                    value,
-                    scale,
-                },
-                _ => LoadSpec::Force {
-                    node: name,
-                    x: if direction == Direction::X {
-                        value
-                    } else {
-                        0.0
+            self.add_load(
+                course.place,
+                match direction {
+                    Direction::Rotation => LoadSpec::Moment {
+                        node: name,
+                        value,
+                        scale,
                     },
-                    y: if direction == Direction::Y {
-                        value
-                    } else {
-                        0.0
+                    _ => LoadSpec::Force {
+                        node: name,
+                        x: if direction == Direction::X {
+                            value
+                        } else {
+                            0.0
+                        },
+                        y: if direction == Direction::Y {
+                            value
+                        } else {
+                            0.0
+                        },
+                        scale,
                     },
-                    scale,
                 },
-            });
+            );
         }
         Ok(())
     }
@@ -340,12 +347,14 @@ impl DeckObjects<'_> {
         }
         for (sides, (value, scale), place) in alike {
             for name in self.lines(&sides, "PRESSED", place) {
-                self.origin.note(at!["loads", self.spec.loads.len()], place);
-                self.spec.loads.push(LoadSpec::Pressure {
-                    along: format!("{MESH}.{name}"),
-                    value,
-                    scale: scale.clone(),
-                });
+                self.add_load(
+                    place,
+                    LoadSpec::Pressure {
+                        along: format!("{MESH}.{name}"),
+                        value,
+                        scale: scale.clone(),
+                    },
+                );
             }
         }
     }
@@ -415,13 +424,15 @@ impl DeckObjects<'_> {
                 true => self.density(body, place)?,
             };
             let part = |k: usize| if k == axis { value * density } else { 0.0 };
-            self.origin.note(at!["loads", self.spec.loads.len()], place);
-            self.spec.loads.push(LoadSpec::Volume {
-                on,
-                x: part(0),
-                y: part(1),
-                scale,
-            });
+            self.add_load(
+                place,
+                LoadSpec::Volume {
+                    on,
+                    x: part(0),
+                    y: part(1),
+                    scale,
+                },
+            );
         }
         Ok(())
     }
@@ -483,12 +494,14 @@ impl DeckObjects<'_> {
                     material.name
                 );
             };
-            self.origin.note(at!["loads", self.spec.loads.len()], place);
-            self.spec.loads.push(LoadSpec::Expansion {
-                on: self.spec.bodies[body].id().to_owned(),
-                strain: coefficient * value,
-                scale,
-            });
+            self.add_load(
+                place,
+                LoadSpec::Expansion {
+                    on: self.spec.bodies[body].id().to_owned(),
+                    strain: coefficient * value,
+                    scale,
+                },
+            );
         }
         Ok(())
     }

@@ -17,9 +17,9 @@ mod loads;
 #[cfg(test)]
 mod tests;
 
-use crate::format::error::{self, Path, SceneError, Step, at};
+use crate::format::error::{self, Path, Step, at};
+use crate::{SceneError, Spec};
 
-use crate::format::spec::Spec;
 use crate::shown::cut;
 use std::collections::HashSet;
 use std::path::Path as FilePath;

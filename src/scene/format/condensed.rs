@@ -22,8 +22,8 @@ use super::notation;
 use super::spec::{BodySpec, History, LoadSpec, Nodes, SlaveSpec, Spec, SurfaceSpec};
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize};
-use stickslip_core::model::{Friction, InitialState, SlavePoints};
-use stickslip_core::{Mode, Settings};
+use stickslip_core::model::{InitialState, SlavePoints};
+use stickslip_core::{Friction, Mode, Settings};
 
 /// First word of an interface problem file.
 pub const HEAD: &str = "Contacts";

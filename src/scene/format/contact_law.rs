@@ -1,7 +1,7 @@
 //! The interaction between slave nodes and surfaces: contact law and friction.
 
 use super::described::macros::described;
-use stickslip_core::model::Friction;
+use stickslip_core::Friction;
 
 described! {
     /// The contact law between a slave node and its surface. Coulomb friction applies to the first two.

@@ -2,7 +2,7 @@
 
 use super::described::fixed;
 use serde::{Deserialize, Serialize};
-use stickslip_core::model::Friction;
+use stickslip_core::Friction;
 
 /// An interface problem in space: (gap, u) = W f + free, with three components for each contact in turn.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

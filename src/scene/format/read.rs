@@ -8,7 +8,7 @@ use super::spec::Spec;
 use crate::shown;
 use ron::error::SpannedError;
 use serde::de::DeserializeOwned;
-use stickslip_exchange::format_error::FormatError;
+use stickslip_exchange::FormatError;
 use stickslip_platform::input::{self, Unreadable};
 
 /// Maximum size of a scene file in bytes: enough for a dense matrix of 2,500 contacts with all digits.

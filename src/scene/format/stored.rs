@@ -9,8 +9,7 @@
 
 use super::spec::History;
 use serde::{Deserialize, Serialize};
-use stickslip_core::model::Friction;
-use stickslip_core::{Mode, Settings};
+use stickslip_core::{Friction, Mode, Settings};
 
 /// First word of such a file.
 pub const HEAD: &str = "Stored";

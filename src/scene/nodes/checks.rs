@@ -2,8 +2,9 @@
 
 use super::super::blocks::Grid;
 use super::super::limits;
+use crate::Spec;
 use crate::format::error::{Fault, at, bail};
-use crate::format::spec::{Nodes, Spec};
+use crate::format::spec::Nodes;
 use std::collections::HashMap;
 
 /// Checks the ids of nodes: valid and unique.

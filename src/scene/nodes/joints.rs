@@ -1,11 +1,11 @@
 //! Meshes of several blocks: joins edges and merges their nodes.
 
-use super::super::geometry::distance;
 use super::{EntryKind, NameEntry, Names};
 use crate::format::error::{Fault, Path, at, bail, fault};
 use crate::format::spec::Nodes;
 use crate::number::sig4;
 use std::collections::HashSet;
+use stickslip_core::plane::distance;
 use stickslip_core::words::counted;
 
 impl Names {

@@ -1,8 +1,8 @@
 //! The lines of sides of a given mesh, for finding one by its shape.
 
-use super::super::geometry::distance;
 use super::given::nodes_of;
 use super::{EntryKind, NameEntry, Names};
+use stickslip_core::plane::distance;
 
 /// A line of sides.
 #[derive(Debug, Clone, PartialEq)]

@@ -15,8 +15,9 @@ mod sides;
 
 use super::blocks::Grid;
 use super::limits;
+use crate::Spec;
 use crate::format::error::{Fault, at};
-use crate::format::spec::{Nodes, Spec};
+use crate::format::spec::Nodes;
 use checks::{check_ids, check_total};
 use elements::Element;
 use stickslip_core::model::{ElementKind, Node};

@@ -15,8 +15,9 @@
 
 use super::siconos::{contacts, settings};
 use super::{compliance, entries_fit, fits};
+use crate::SceneError;
 use crate::format::condensed::{Matrix, Problem};
-use crate::format::{SceneError, read};
+use crate::format::read;
 use std::path::{Path, PathBuf};
 use stickslip_core::words::counted;
 use stickslip_exchange::matrix_market;

@@ -14,8 +14,9 @@ pub mod siconos;
 pub mod stored;
 
 use super::limits;
+use crate::SceneError;
 use crate::format::condensed::Matrix;
-use crate::format::{SceneError, error, read};
+use crate::format::{error, read};
 use std::path::Path;
 use stickslip_core::linear::estimate::sparse_bytes;
 use stickslip_core::linear::sparse_contacts::FEW;

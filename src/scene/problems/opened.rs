@@ -2,8 +2,9 @@
 
 use super::siconos;
 use super::title;
+use crate::SceneError;
 use crate::format::condensed::Problem;
-use crate::format::{SceneError, read};
+use crate::format::read;
 use std::path::Path;
 use stickslip_exchange::fclib;
 use stickslip_platform::input;

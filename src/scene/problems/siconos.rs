@@ -10,9 +10,9 @@
 use crate::format::condensed::{Contact, Problem};
 use crate::limits;
 use stickslip_core::linear::sparse_contacts::FEW;
-use stickslip_core::model::{Friction, InitialState, LinearSolver};
-use stickslip_core::{Mode, Settings, Strategy};
-use stickslip_exchange::format_error::FormatError;
+use stickslip_core::model::{InitialState, LinearSolver};
+use stickslip_core::{Friction, Mode, Settings, Strategy};
+use stickslip_exchange::FormatError;
 use stickslip_exchange::problem::{self, Local};
 use stickslip_exchange::siconos;
 pub use stickslip_exchange::siconos::Storage;

@@ -11,10 +11,11 @@
 
 use super::condense::{NotEliminated, condensed, reduced};
 use super::fits;
+use crate::SceneError;
 use crate::format::condensed::{Contact, Matrix, Problem};
 use crate::format::error::{AtPath, Fault, Path, at, bail, fault, quoted};
+use crate::format::read;
 use crate::format::stored::{RigidContact, Stored};
-use crate::format::{SceneError, read};
 use crate::scene::placed;
 use std::collections::HashMap;
 use stickslip_core::model::InitialState;

@@ -10,7 +10,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
 use ratatui::text::{Line, Span};
-use stickslip_debugger::teach::Tutor;
+use stickslip_debugger::Tutor;
 use stickslip_debugger::teach::tutor::Paragraph;
 use stickslip_scene::shown;
 use unicode_width::UnicodeWidthStr;

@@ -10,7 +10,8 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use ratatui::style::Style;
 use ratatui::text::{Line, Span};
-use stickslip_debugger::explain::remedies::{self, COLUMNS, RemedyTrial, TrialEnd, rank};
+use stickslip_debugger::RemedyTrial;
+use stickslip_debugger::explain::remedies::{self, COLUMNS, TrialEnd, rank};
 use unicode_width::UnicodeWidthStr;
 
 /// Indices into [`COLUMNS`], the most important first; a narrow screen shows those that fit.

@@ -11,9 +11,9 @@ use crate::view::View;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
-use stickslip_core::linear::norms::Norms;
+use stickslip_core::Norms;
+use stickslip_debugger::WatchQuantity;
 use stickslip_debugger::explain::names;
-use stickslip_debugger::history::watches::WatchQuantity;
 use stickslip_scene::number;
 
 /// Minimum height of a chart; where there is less, there are numbers of this width.

@@ -20,12 +20,12 @@ use ratatui::style::{Modifier, Style};
 use ratatui::text::{Line, Span};
 use ratatui::widgets::Widget;
 use std::f64::consts::FRAC_PI_4;
-use stickslip_core::contact::element::SurfaceElement;
-use stickslip_core::fem::deformation::PointDeformation;
 use stickslip_core::fem::lagrange;
-use stickslip_core::model::{BodyKind, Contact, Model};
+use stickslip_core::model::{BodyKind, Contact};
+use stickslip_core::plane::distance;
+use stickslip_core::{Model, PointDeformation, SurfaceElement};
+use stickslip_debugger::Examination;
 use stickslip_debugger::explain::conditions::{ConditionArrow, Conditions, Given, conditions};
-use stickslip_debugger::explain::examination::Examination;
 use stickslip_debugger::explain::model_facts::{self, solid_elements};
 use stickslip_debugger::explain::names;
 use stickslip_debugger::explain::outline::{self, Point, bounds, curve, outer_nodes};
@@ -191,7 +191,7 @@ pub fn slave_at(area: Rect, app: &App, view: &View, at: Position) -> Option<usiz
 fn draw_curve(canvas: &mut Canvas, window: &Window, nodes: &[Point], style: Style) {
     let dots = |points: &[Point]| -> Vec<Dot> { points.iter().map(|&p| window.dot(p)).collect() };
     let straight = dots(nodes);
-    let is_close = |ends: &[Dot]| (ends[0][0] - ends[1][0]).hypot(ends[0][1] - ends[1][1]) < CLOSE;
+    let is_close = |ends: &[Dot]| distance(ends[0], ends[1]) < CLOSE;
     match straight.windows(2).all(is_close) {
         true => canvas.polyline(&straight, style),
         false => canvas.polyline(&dots(&curve(nodes)), style),
@@ -227,7 +227,7 @@ fn inside(canvas: &mut Canvas, window: &Window, app: &App, view: &View) {
     if GROWN * facts.largest_element * window.scale >= ELEMENT {
         for element in view.model.bodies.iter().flat_map(solid_elements) {
             let [a, b] = model_facts::diagonal(element).map(|node| window.place(view, node));
-            let size = (a[0] - b[0]).hypot(a[1] - b[1]) * window.scale;
+            let size = distance(a, b) * window.scale;
             if size >= ELEMENT && window.sees(a, size) {
                 for face in element.kind.faces_of(&element.nodes) {
                     draw(canvas, &face, app.theme.faint);
@@ -310,7 +310,7 @@ fn surfaces(canvas: &mut Canvas, window: &Window, app: &App, view: &View) {
         let (Some(first), Some(last)) = (nodes.first(), nodes.last()) else {
             continue;
         };
-        walked += (last[0] - first[0]).hypot(last[1] - first[1]) * window.scale;
+        walked += distance(*last, *first) * window.scale;
         if walked < SPACING {
             continue;
         }
@@ -327,7 +327,7 @@ fn normals(nodes: &[Point], window: &Window) -> Vec<(Point, Point)> {
     let (Some(first), Some(last)) = (nodes.first(), nodes.last()) else {
         return Vec::new();
     };
-    let dots = (last[0] - first[0]).hypot(last[1] - first[1]) * window.scale;
+    let dots = distance(*last, *first) * window.scale;
     let count = (dots / SPACING).clamp(1.0, 40.0) as usize;
     let length = NORMAL * window.extent;
     let normal = |index: usize| {

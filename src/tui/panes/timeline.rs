@@ -14,10 +14,9 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Margin, Position, Rect};
 use ratatui::style::{Modifier, Style};
 use std::ops::Range;
-use stickslip_core::model::Mode;
-use stickslip_core::step::event::{Failure, Outcome};
+use stickslip_core::{Failure, Mode, Outcome};
 use stickslip_debugger::explain::names;
-use stickslip_debugger::history::strip::{PointKind, Strip};
+use stickslip_debugger::{PointKind, Strip};
 use unicode_width::UnicodeWidthStr;
 
 /// Rows besides nodes: increments, majors, the cursor, outcomes, brackets.

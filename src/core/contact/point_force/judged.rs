@@ -5,13 +5,12 @@
 //! them.
 
 use crate::contact::closest_points::{self, ClosestPoint};
-use crate::contact::element::{ElementPositions, SurfaceElement};
 use crate::contact::facing::{MOST, faced};
 use crate::contact::point_force;
-use crate::contact::projection::SurfacePoint;
 use crate::fem::lagrange::{MAX_NODES, gauss};
 use crate::model::{Contact, PointGive, Surface};
 use crate::plane::dot;
+use crate::{ElementPositions, SurfaceElement, SurfacePoint};
 
 /// The interface in one configuration, with its forces.
 #[derive(Debug, Clone, Copy)]

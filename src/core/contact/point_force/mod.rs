@@ -33,10 +33,10 @@ mod tests;
 pub use linearised::{LinearisedForce, NodeOverElement, OtherForces, linearise, tilt, turned};
 pub use pair::Pair;
 
-use crate::contact::element::SurfaceElement;
-use crate::contact::projection::{Projection, SurfacePoint, tangent};
+use crate::contact::projection::{Projection, tangent};
 use crate::model::{PointGive, Surface};
 use crate::plane::length;
+use crate::{SurfaceElement, SurfacePoint};
 
 /// Local flexibilities of the element at a surface point. `None` if the element has none.
 pub fn of(surface: &Surface, spot: SurfacePoint) -> Option<PointGive> {

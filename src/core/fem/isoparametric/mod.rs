@@ -21,9 +21,10 @@
 //!
 //! In both cases force and tangent are pure functions of (shape, [`Previous`], current displacements), and the tangent is exact.
 
+use crate::Material;
 use crate::elements::kinds::continuum_kind::Parent;
 use crate::fem::element::{self, Previous};
-use crate::fem::material::{Material, Response};
+use crate::fem::material::Response;
 use crate::model::{Law, Update};
 use nalgebra::{Matrix2, Vector3};
 use ring::{Ring, RingTerms};

@@ -5,8 +5,8 @@ use super::retry::{Effect, Recovery, Retry};
 use super::stalled::FailedIncrement;
 use crate::model::ArcLength;
 use crate::step::arc_state::ROUNDING;
-use crate::step::event::{Failure, Outcome};
 use crate::strategy;
+use crate::{Failure, Outcome};
 
 /// Half the increment, unless it is the smallest or the strategy does not cut.
 pub(super) struct IncrementCut;

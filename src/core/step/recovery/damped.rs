@@ -22,16 +22,15 @@ use super::fallback::Fallback;
 use super::motion::Motion;
 use super::retry::{Effect, Recovery, Retry};
 use super::stalled::FailedIncrement;
-use crate::contact::laws::{Finding, JudgedLaw, Verdict};
-use crate::linear::norms::Norms;
-use crate::linear::source::{AcceptedState, LinearisationPoint};
-use crate::step::event::{Failure, MotionEvent, Outcome, SmallerStepReason};
+use crate::linear::source::AcceptedState;
+use crate::step::event::SmallerStepReason;
 use crate::step::jump::AcceptanceNotes;
+use crate::{
+    Failure, Finding, JudgedLaw, LinearisationPoint, MotionEvent, Norms, Outcome, Pace, Stepper,
+    SubIncrement, Verdict,
+};
 
 use crate::step::iterate::Iterate;
-use crate::step::pace::Pace;
-use crate::step::stepper::Stepper;
-use crate::step::sub_increment::SubIncrement;
 use crate::step::verdict::worst_of;
 use crate::step::watch::StabilityWatch;
 use std::sync::Arc;

@@ -3,11 +3,9 @@
 use super::fallback::{DEEPER, Fallback, FallbackState};
 use super::retry::{Effect, Recovery, Retry};
 use super::stalled::FailedIncrement;
-use crate::model::{Jumps, Settings};
-use crate::step::event::{Failure, Outcome};
-use crate::step::state::State;
-use crate::step::sub_increment::SubIncrement;
+use crate::model::Jumps;
 use crate::strategy;
+use crate::{Failure, Outcome, Settings, State, SubIncrement};
 
 impl Recovery for Fallback {
     fn name(&self) -> &'static str {

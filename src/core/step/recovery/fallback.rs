@@ -20,8 +20,8 @@
 //! Each fallback is cut into halves as before and stays in force until a part of the increment is accepted. If none helps, the
 //! last half is repeated without a fallback, so that the failed state matches the reported failure.
 
-use crate::model::{BoundUpdate, Settings, Touch};
-use crate::step::sub_increment::SubIncrement;
+use crate::model::Touch;
+use crate::{BoundUpdate, Settings, SubIncrement};
 use serde::{Deserialize, Serialize};
 
 /// Factor by which the search cuts below the least increment.

@@ -1,6 +1,6 @@
 //! Runs without one recovery or strategy, to find out whether a scene needs it.
 
-use crate::model::Strategy;
+use crate::Strategy;
 
 /// The recovery or strategy that a stepper does not use.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -34,12 +34,8 @@ mod whole;
 
 pub(super) use slip_step::PATIENCE;
 
-use crate::linear::source::Source;
-use crate::model::{Mode, Model};
-use crate::step::event::{Failure, Outcome};
 use crate::step::iterate::Iterate;
-use crate::step::state::State;
-use crate::step::stepper::Stepper;
+use crate::{Failure, Mode, Model, Outcome, Source, State, Stepper};
 use fallback::Fallback;
 use left_out::OmittedStep;
 use proximal::SlipStiffness;

@@ -25,18 +25,14 @@
 
 use super::retry::{Effect, Recovery, Retry};
 use super::stalled::FailedIncrement;
-use crate::contact::record::ContactRecord;
-use crate::contact::record::Forced;
-use crate::contact::state::ContactState;
 use crate::contact::tracking::leave_border;
-use crate::interface::kinematics::{NodeIncrement, NodeKinematics};
-use crate::linear::source::SolveResult;
-use crate::model::{BoundUpdate, Friction, Mode};
 use crate::plane::minus;
 use crate::step::arc_state::{ArcState, Change};
-use crate::step::event::{Failure, Outcome};
 use crate::step::iterate::Iterate;
-use crate::step::state::State;
+use crate::{
+    BoundUpdate, ContactRecord, ContactState, Failure, Forced, Friction, Mode, NodeIncrement,
+    NodeKinematics, Outcome, SolveResult, State,
+};
 use std::sync::Arc;
 
 /// Ends of modes coincide if their distances differ by less than this fraction.

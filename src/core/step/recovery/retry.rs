@@ -4,8 +4,7 @@ use super::fallback::FallbackState;
 use super::motion::Motion;
 use super::stalled::FailedIncrement;
 use crate::step::arc_state::ArcState;
-use crate::step::event::{Failure, Outcome};
-use crate::step::sub_increment::SubIncrement;
+use crate::{Failure, Outcome, SubIncrement};
 
 /// One way to restart an increment.
 pub(super) trait Recovery: Sync {

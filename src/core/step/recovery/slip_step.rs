@@ -1,12 +1,9 @@
 //! Major iterations in which sliding is held back ([`super::proximal`]), and which of them are undone.
 
 use super::proximal::SlipStiffness;
-use crate::contact::record::ContactRecord;
-use crate::linear::norms::Norms;
-use crate::model::Mode;
-use crate::step::event::{Failure, Outcome};
 use crate::step::iterate::Iterate;
-use crate::step::state::{Progress, State};
+use crate::step::state::Progress;
+use crate::{ContactRecord, Failure, Mode, Norms, Outcome, State};
 
 /// Slip in one major iteration beyond which it is undone, relative to the scene's length.
 const FAR: f64 = 0.02;

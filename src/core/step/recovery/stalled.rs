@@ -1,12 +1,9 @@
 //! The conditions that recoveries check on a failed increment.
 
 use super::fallback::{DEEPER, Fallback};
-use crate::contact::state::ContactState;
-use crate::linear::singular::Singular;
-use crate::linear::source::Source;
-use crate::model::{BodyKind, Factor, Jumps, Mode, Model, SearchMode};
-use crate::step::event::Failure;
-use crate::step::state::State;
+use crate::model::{BodyKind, Factor, Jumps, SearchMode};
+use crate::plane::max_abs;
+use crate::{ContactState, Failure, Mode, Model, Singular, Source, State};
 
 /// Minimum size of a half, as a fraction of the whole increment.
 const SMALLEST_HALF: f64 = 1e-9;
@@ -41,7 +38,7 @@ impl FailedIncrement<'_> {
         if !self.can_move() {
             return controls.least;
         }
-        let largest = self.model.path.iter().fold(0.0_f64, |m, p| m.max(p.abs()));
+        let largest = max_abs(&self.model.path);
         // The smallest half is less than twice the minimum.
         let wanted = controls.settings.limit_load * largest / 2.0;
         // Halves are counted in 32 bits.

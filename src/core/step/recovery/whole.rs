@@ -4,8 +4,8 @@
 use super::retry::{Effect, Recovery, Retry};
 use super::stalled::FailedIncrement;
 use crate::model::Jumps;
-use crate::step::event::{Failure, Outcome};
 use crate::strategy;
+use crate::{Failure, Outcome};
 
 pub(super) struct WholeIncrement;
 

@@ -2,8 +2,8 @@
 
 use super::export_state::ExportState;
 use super::timeline::colour;
+use crate::RoundOff;
 use crate::explain::names;
-use crate::explain::round_off::RoundOff;
 use crate::explain::trail::{self, Cone, TrailPoint};
 use stickslip_core::model::MonitorQuantity;
 use stickslip_core::words::counted;

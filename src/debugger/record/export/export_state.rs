@@ -1,13 +1,12 @@
 //! The input of an export: a state and its context.
 
 use super::frozen::{NoExport, Origin};
+use crate::Strip;
 use crate::explain::examination::NotExamined;
-use crate::history::strip::Strip;
 use std::sync::Arc;
 use stickslip_core::{Event, InterfaceProblem, SolverLost, State, Status, Stepper};
 use stickslip_platform::files::FileError;
-use stickslip_scene::Scene;
-use stickslip_scene::format::SceneError;
+use stickslip_scene::{Scene, SceneError};
 use stickslip_study::drawn::PlotError;
 
 /// Number of minor iterations in the timeline of a whole picture.

@@ -20,19 +20,19 @@ use crate::explain::names;
 use crate::history::verdicts;
 use std::ops::ControlFlow;
 use std::sync::Arc;
-use stickslip_core::interface::minor_history::Cycle;
-use stickslip_core::interface::problem::ProblemNode;
 use stickslip_core::model::{Bond, InitialState};
+use stickslip_core::plane::max_abs;
 use stickslip_core::strategy::method;
 use stickslip_core::{
-    ContactRecord, Failure, Forced, InterfaceProblem, Mode, Model, Outcome, Position, RunEnd,
-    Settings, Stepper, Trials, Until,
+    ContactRecord, Cycle, Failure, Forced, InterfaceProblem, Mode, Model, Outcome, Position,
+    ProblemNode, RunEnd, Settings, Stepper, Trials, Until,
 };
 use stickslip_linalg::DenseFactors;
 use stickslip_scene::format::condensed::{Contact, Matrix, Problem};
-use stickslip_scene::format::{SceneError, read};
+use stickslip_scene::format::read;
 use stickslip_scene::siconos::Friction2d;
-use stickslip_scene::{Scene, limits, shown};
+use stickslip_scene::{Scene, SceneError};
+use stickslip_scene::{limits, shown};
 
 /// If the inverse (relative to the springs) that yields one of the two matrices is larger than this, removing
 /// the springs loses too many digits.
@@ -449,7 +449,7 @@ fn stiffness(problem: &InterfaceProblem) -> Option<Parts> {
     )?;
     let (c, k_columns) = solved.split_at(n);
     // (1 + R/k)⁻¹ = 1 + K/k; without springs nothing has to be removed.
-    let largest = k_columns.iter().fold(0.0_f64, |m, x| m.max(x.abs())) / k;
+    let largest = max_abs(k_columns) / k;
     if largest > SINGULAR {
         return None;
     }
@@ -480,7 +480,7 @@ fn compliance(problem: &InterfaceProblem) -> Option<Parts> {
     right.extend((0..n * n).map(|at| if at / n == at % n { 1.0 } else { 0.0 }));
     let solved = solved(&relation.response, right)?;
     let (still, inverse) = solved.split_at(n);
-    let largest = inverse.iter().fold(0.0_f64, |m, x| m.max(x.abs())) * problem.spring;
+    let largest = max_abs(inverse) * problem.spring;
     if largest > SINGULAR {
         return None;
     }

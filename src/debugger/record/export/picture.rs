@@ -8,14 +8,14 @@ use super::chart;
 use super::export_state::{ExportError, ExportState, PicturePart};
 use super::timeline::{self, chosen, colour};
 use super::window::{FORCE, Window};
+use crate::RoundOff;
 use crate::explain::conditions::{Given, conditions};
 use crate::explain::names;
 use crate::explain::outline::{self, Bounds, Point, Projection, curve, extent};
-use crate::explain::round_off::RoundOff;
-use stickslip_core::contact::element::SurfaceElement;
 use stickslip_core::model::{BodyKind, SolidElement};
+use stickslip_core::plane::distance;
 use stickslip_core::words::counted;
-use stickslip_core::{ContactRecord, Mode, Model, Outcome, Status, Stepper};
+use stickslip_core::{ContactRecord, Mode, Model, Outcome, Status, Stepper, SurfaceElement};
 use stickslip_scene::number::{shortest, sig4};
 use stickslip_study::drawn::PlotError;
 use stickslip_study::origin;
@@ -298,7 +298,7 @@ impl ShapeDrawing<'_> {
             for SolidElement { kind, nodes, .. } in &solid.elements {
                 let across = kind.faces().len() / 2;
                 let (a, b) = ((self.now)(nodes[0]), (self.now)(nodes[across]));
-                if (a[0] - b[0]).hypot(a[1] - b[1]) * self.window.scale < ELEMENT {
+                if distance(a, b) * self.window.scale < ELEMENT {
                     continue;
                 }
                 for face in kind.faces_of(nodes) {

@@ -2,7 +2,7 @@
 
 use super::picture::ShapeDrawing;
 use super::window::FORCE;
-use crate::explain::round_off::RoundOff;
+use crate::RoundOff;
 use stickslip_study::sheet::Colour;
 
 /// Colour of pressures.

@@ -2,8 +2,8 @@
 
 use super::export_state::{COLUMNS, ExportState, PicturePart, PictureRequest};
 use super::frozen::Origin;
+use crate::Strip;
 use crate::explain::trail;
-use crate::history::strip::Strip;
 use std::sync::Arc;
 use stickslip_core::{Event, Outcome, State, Status, Stepper};
 use stickslip_scene::Scene;

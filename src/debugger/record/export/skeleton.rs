@@ -4,10 +4,10 @@
 //! The guesses are simple. The contact is between the two lines of different bodies whose nodes are closest on
 //! average. The lowest horizontal line is fixed; the highest one moves down by a hundredth of the height.
 
-use stickslip_scene::Scene;
-use stickslip_scene::format::SceneError;
+use stickslip_core::plane::distance;
 use stickslip_scene::nodes::lines::Line;
 use stickslip_scene::shown;
+use stickslip_scene::{Scene, SceneError};
 
 /// Id of the mesh.
 const ID: &str = "m";
@@ -88,7 +88,7 @@ fn mean_distance(line: &Line, other: &Line) -> f64 {
     };
     let (own, others) = (few(&line.at, FEW), few(&other.at, 16 * FEW));
     let nearest = |a: &[f64; 2]| {
-        let far = others.iter().map(|b| (a[0] - b[0]).hypot(a[1] - b[1]));
+        let far = others.iter().map(|b| distance(*a, *b));
         far.fold(f64::INFINITY, f64::min)
     };
     own.iter().map(nearest).sum::<f64>() / own.len().max(1) as f64

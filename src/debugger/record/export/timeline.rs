@@ -2,7 +2,7 @@
 
 use super::export_state::COLUMNS;
 use crate::explain::names;
-use crate::history::strip::{PointKind, Strip};
+use crate::{PointKind, Strip};
 use stickslip_core::{Mode, Model};
 use stickslip_scene::number::shortest;
 use stickslip_study::drawn::PlotError;

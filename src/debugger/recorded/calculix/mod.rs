@@ -15,14 +15,12 @@ use run::CalculixRun;
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Arc;
-use stickslip_core::contact::projection::SurfacePoint;
-use stickslip_core::contact::record::ContactRecord;
-use stickslip_core::linear::norms::Norms;
-use stickslip_core::model::{FinishedRun, Mode, Model};
-use stickslip_core::step::event::{Event, Failure, Outcome, Position, Words};
-use stickslip_core::step::intervene::{Intervention, Refusal};
-use stickslip_core::step::solver::{Capabilities, Now, RewindSupport, Solver, SolverLost};
-use stickslip_core::step::state::State;
+use stickslip_core::model::FinishedRun;
+use stickslip_core::step::event::Words;
+use stickslip_core::{
+    Capabilities, ContactRecord, Event, Failure, Intervention, Mode, Model, Norms, Now, Outcome,
+    Position, Refusal, RewindSupport, Solver, SolverLost, State, SurfacePoint,
+};
 use stickslip_exchange::attach::message::{self, Id, Level};
 use stickslip_exchange::calculix::cel::Slave;
 use stickslip_exchange::calculix::files::End;

@@ -2,7 +2,8 @@
 
 use super::cycle::{self, Cycle};
 use std::fmt::Write;
-use stickslip_core::model::{RunFinding, RunShape};
+use stickslip_core::RunFinding;
+use stickslip_core::model::RunShape;
 use stickslip_exchange::calculix::cel::{ClosedContact, Slave};
 use stickslip_exchange::calculix::cvg::Norms;
 use stickslip_exchange::calculix::files::{CalculixFiles, End};

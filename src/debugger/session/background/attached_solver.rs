@@ -2,14 +2,12 @@
 
 use super::Helper;
 use crate::explain::attached;
-use crate::explain::examination::Examination;
 use crate::explain::facts::Fact;
-use crate::explain::page::DiagnosisPage;
 use crate::explain::remedies;
 use crate::explain::try_list::TryLine;
-use crate::explain::walk::ReportedIterations;
 use crate::session::background_messages::{BackgroundReply, Reported};
 use crate::session::trials::try_all;
+use crate::{DiagnosisPage, Examination, ReportedIterations};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::Sender;
 use stickslip_core::{ReportedProblem, SolverLost, State, Status};

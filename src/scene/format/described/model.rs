@@ -6,11 +6,11 @@ use super::words::{of_word, word, words};
 use super::{Choice, Described, Scalar, ScalarPlace, Visit, field_of, one_of, types_of};
 use stickslip_core::model::documented::text;
 use stickslip_core::model::{
-    AtCycle, AtLimit, Axis, BoundUpdate, Component, Control, ElementKind, Friction, Geometry,
-    InitialGaps, InitialState, Jumps, Law, LinearSolver, Plane, PointForce, Refactor,
-    ResidualMethod, SearchMode, SlavePoints, SlipCount, Sticking, TieRule, Touch, Update,
+    AtCycle, AtLimit, Axis, Component, Control, ElementKind, Geometry, InitialGaps, InitialState,
+    Jumps, Law, LinearSolver, Plane, PointForce, Refactor, ResidualMethod, SearchMode, SlavePoints,
+    SlipCount, Sticking, TieRule, Touch, Update,
 };
-use stickslip_core::{Mode, Settings, Strategy};
+use stickslip_core::{BoundUpdate, Friction, Mode, Settings, Strategy};
 
 macro_rules! fields {
     ($name:ident { $($part:ident),* $(,)? }) => {

@@ -4,7 +4,7 @@ use super::motion::{GroupMotion, pairs_of, words};
 use super::shape::DeckShape;
 use super::supports::groups;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
-use stickslip_core::model::RunFinding;
+use stickslip_core::RunFinding;
 use stickslip_exchange::mesh::CellKind;
 
 /// Nodes closer than this are at the same place, in sizes of a body.

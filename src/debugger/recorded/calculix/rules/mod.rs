@@ -18,7 +18,7 @@ mod supports;
 
 use super::run::CalculixRun;
 use shape::DeckShape;
-use stickslip_core::model::RunFinding;
+use stickslip_core::RunFinding;
 
 /// What a rule looks at.
 enum Rule {

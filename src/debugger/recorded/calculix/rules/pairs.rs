@@ -4,7 +4,7 @@ use super::numbers::{plain, rounded, rounded_up};
 use super::shape::{DeckShape, PairShape, SortedPoints, SurfaceFace, Vector};
 use super::supports::is_free;
 use std::collections::{BTreeMap, BTreeSet};
-use stickslip_core::model::RunFinding;
+use stickslip_core::RunFinding;
 use stickslip_exchange::inp::Deck;
 use stickslip_exchange::inp::deck::{Direction, Faces, Pair, Value};
 use stickslip_scene::number::sig4;

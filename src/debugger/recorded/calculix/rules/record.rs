@@ -6,7 +6,7 @@ use super::pairs::pair_card;
 use super::shape::DeckShape;
 use super::supports::open_at_start;
 use std::collections::BTreeSet;
-use stickslip_core::model::RunFinding;
+use stickslip_core::RunFinding;
 use stickslip_exchange::calculix::cel::Slave;
 use stickslip_exchange::calculix::cvg::Norms;
 use stickslip_exchange::calculix::files::{End, Iteration};

@@ -3,7 +3,7 @@
 use super::motion::{GroupMotion, LOADED, Motion, is_tied, pairs_of};
 use super::numbers::{plain, rounded, rounded_up, vector};
 use super::shape::{DeckShape, PairShape, SlaveGap, Vector};
-use stickslip_core::model::RunFinding;
+use stickslip_core::RunFinding;
 use stickslip_scene::number::sig4;
 
 /// Cosine between normals of a contact that counts as flat.

@@ -4,7 +4,7 @@ use super::numbers::{plain, rounded};
 use super::pairs::pair_card;
 use super::shape::{DeckShape, PairShape, Vector};
 use std::collections::HashMap;
-use stickslip_core::model::RunFinding;
+use stickslip_core::RunFinding;
 use stickslip_exchange::inp::deck::{Direction, Step};
 use stickslip_scene::number::sig4;
 

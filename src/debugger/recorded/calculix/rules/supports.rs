@@ -6,7 +6,7 @@ use super::resting::is_pressed_by_loads;
 use super::shape::{DeckShape, PairShape, SlaveGap, Vector};
 use nalgebra::Matrix3;
 use std::collections::BTreeSet;
-use stickslip_core::model::RunFinding;
+use stickslip_core::RunFinding;
 use stickslip_scene::number::sig4;
 
 /// Part of a free motion along an axis above which a support along it stops the motion.
