@@ -275,3 +275,13 @@ fn an_empty_answer_is_reported_and_a_monitor_shows_its_curve() {
     let seen = debugger.text(120, 40);
     assert!(seen.contains("Load over"), "{seen}");
 }
+
+#[test]
+fn a_long_message_leaves_the_task_of_a_lesson_visible() {
+    let mut debugger = debugger("01-pinned-beam-rough-floor", ":lesson attached@11 Enter");
+    debugger.type_keys(":branch b2 Enter");
+    debugger.settle();
+    let seen = debugger.text(80, 24);
+    assert!(seen.contains("b2: 3 held sliding (valid,"), "{seen}");
+    assert!(seen.contains("▶ answer: a, then the number"), "{seen}");
+}

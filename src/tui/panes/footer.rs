@@ -15,6 +15,8 @@ use stickslip_debugger::teach::question::AnswerKind;
 use stickslip_scene::number;
 use unicode_width::UnicodeWidthStr;
 
+/// Maximum number of message lines above the keys with a lesson on the screen.
+const OVER_LESSON: usize = 2;
 /// Actions that the footer shows at any width.
 const ALWAYS: [&str; 3] = ["pane", "help", "quit"];
 
@@ -29,7 +31,13 @@ pub fn draw(buffer: &mut Buffer, places: &ScreenAreas, app: &App, view: Option<&
         0 => return paint::lines(buffer, places.message, &lines),
         _ => usize::from(places.footer.bottom() / 2).max(2),
     };
-    lines.truncate(most.saturating_sub(keys.len()).max(1));
+    let lesson = places.panes.iter().any(|(pane, _)| *pane == Pane::Lesson);
+    // The task of a lesson stays visible above a message.
+    let most = match app.overlay {
+        Overlay::None if lesson => most.min(keys.len() + OVER_LESSON),
+        _ => most,
+    };
+    shorten(&mut lines, most.saturating_sub(keys.len()).max(1), width);
     lines.extend(keys.into_iter().take(most - lines.len()));
     let height = lines.len() as u16;
     let area = Rect {
@@ -38,7 +46,6 @@ pub fn draw(buffer: &mut Buffer, places: &ScreenAreas, app: &App, view: Option<&
         ..places.footer
     };
     // The text of a lesson needs its rows.
-    let lesson = places.panes.iter().any(|(pane, _)| *pane == Pane::Lesson);
     let bare = matches!(app.overlay, Overlay::None | Overlay::Line(_)) && !lesson;
     if bare && view.is_some() && area.y < places.message.y {
         for x in area.left()..area.right() {
@@ -46,6 +53,18 @@ pub fn draw(buffer: &mut Buffer, places: &ScreenAreas, app: &App, view: Option<&
         }
     }
     paint::over(buffer, area, &lines, &app.theme);
+}
+
+/// Leaves out the lines after the first `most`, and marks the last one if there were more.
+fn shorten(lines: &mut paint::Lines, most: usize, width: usize) {
+    if lines.len() <= most {
+        return;
+    }
+    lines.truncate(most);
+    if let Some(last) = lines.last_mut() {
+        let text = paint::cut(&format!("{last} …"), width.saturating_sub(1));
+        *last = Line::styled(text, last.style);
+    }
 }
 
 fn message(app: &App, view: Option<&View>, places: &ScreenAreas, width: usize) -> paint::Lines {
@@ -68,7 +87,8 @@ fn message(app: &App, view: Option<&View>, places: &ScreenAreas, width: usize) -
     if let Some(count) = app.count {
         return vec![Line::styled(format!(" {count} ×"), theme.key)];
     }
-    let shown = places.panes.iter().any(|(pane, _)| *pane == Pane::Lesson);
+    let has_pane = places.panes.iter().any(|(pane, _)| *pane == Pane::Lesson);
+    let shown = has_pane && !matches!(app.overlay, Overlay::Chart(_));
     if let (false, "", Some(tutor)) = (shown, app.message.text.as_str(), &app.learning.lesson) {
         return wrapped(&format!("▶ {}", tutor.todo()), width, theme.key);
     }
