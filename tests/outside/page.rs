@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use std::sync::Arc;
 use stickslip::explain::page::{DiagnosisPage, page};
 use stickslip::explain::remedies::{compare, rank};
-use stickslip::explain::try_list::TryOutcome;
+use stickslip::explain::try_list::{TryLine, TryOutcome};
 use stickslip::scene::Scene;
 use stickslip::step::event::Outcome;
 use stickslip::step::stepper::Stepper;
@@ -100,11 +100,10 @@ fn faults(page: &DiagnosisPage) -> Vec<String> {
         .why
         .iter()
         .find(|why| why.contains("so no iteration can find any"));
-    let modes = |command: &str| command.starts_with(":start-from");
-    if let (Some(why), Some(line)) = (
-        nothing,
-        page.tries.iter().find(|line| modes(line.command())),
-    ) {
+    let is_choice = |line: &&TryLine| {
+        line.command().starts_with(":start-from") || line.words().starts_with("forcing a node")
+    };
+    if let (Some(why), Some(line)) = (nothing, page.tries.iter().find(is_choice)) {
         faults.push(format!(
             "Why rules out what Try lists: {why}; {}",
             line.words()

@@ -175,10 +175,13 @@ fn kinds(state: &State, failure: &Failure) -> Vec<RemedyKind> {
     all
 }
 
+/// Advice for a cycle of modes.
+pub(super) const FORCE_THIRD_MODE: &str = "forcing a node into its third mode (m)";
+
 /// What the user can do in the scene's file or in the debugger.
 fn by_hand(state: &State, failure: &Failure) -> &'static [&'static str] {
     match failure {
-        Failure::Cycle(_) => &["forcing a node into its third mode (m)"],
+        Failure::Cycle(_) => &[FORCE_THIRD_MODE],
         Failure::MajorCycle(_) => &["replacing the kink by an arc, if it is a corner of the body"],
         Failure::NoAnswer { .. } => &[
             "other loads or friction",

@@ -4,7 +4,7 @@
 //! problem that is solved next. Slow parts (trials of remedies, the load that smaller steps reach) come last,
 //! so that the page grows while it is read.
 
-use super::advice::{Advice, FINER, advice};
+use super::advice::{Advice, FINER, FORCE_THIRD_MODE, advice};
 use super::attempt::Attempt;
 use super::diagnosis::undecided;
 use super::examination::{DONE, Examination, frozen, nothing};
@@ -595,7 +595,12 @@ impl PageBuilder {
             None if self.refines => lines.push(TryLine::by_hand(FINER)),
             None => {}
         }
-        lines.extend(self.by_hand.iter().map(|text| TryLine::by_hand(text)));
+        // Without consistent modes no forced mode helps.
+        let census = self.found.census.as_ref();
+        let has_none = census.is_some_and(|census| census.exact && census.answers.is_empty());
+        let by_hand = self.by_hand.iter();
+        let by_hand = by_hand.filter(|text| !has_none || **text != FORCE_THIRD_MODE);
+        lines.extend(by_hand.map(|text| TryLine::by_hand(text)));
         try_list::sort(&mut lines);
         lines
     }
