@@ -4,6 +4,7 @@
 mod stored;
 
 use std::path::{Path, PathBuf};
+use stickslip::explain::page::DiagnosisPage;
 use stickslip::recorded::calculix::rules::{examine, shape::DeckShape};
 use stickslip::recorded::calculix::run::CalculixRun;
 use stickslip_exchange::inp::{self, Deck};
@@ -87,6 +88,12 @@ fn a_run_that_converged_has_no_cause_from_attempts_that_were_cut() {
     let run = run(&root(), "slider-soft");
     assert!(!run.switching.is_empty());
     assert!(run.findings.is_empty(), "{:?}", run.findings);
+    let finished = opened(&root(), "slider-soft").scene.model.finished;
+    let page = DiagnosisPage::finished(&finished.unwrap());
+    assert_eq!(
+        page.what,
+        "Run: the last attempt converged, and no rule applies"
+    );
     // Nor one from its deck, which `check` would warn about.
     let path = root().join("slider-soft.inp");
     let soft = std::fs::read_to_string(path).unwrap();

@@ -100,6 +100,8 @@ pub struct FinishedRun {
     pub cycles: Vec<std::ops::Range<usize>>,
     /// Limit of the displacement correction (relative).
     pub correction_limit: f64,
+    /// Whether its last attempt converged.
+    pub converged: bool,
     /// Why it did not converge, most likely causes first.
     pub findings: Vec<RunFinding>,
     /// Its contact surfaces; empty without its input.

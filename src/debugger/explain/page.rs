@@ -193,7 +193,8 @@ impl DiagnosisPage {
     /// The page of a finished run of another program: what its rules found.
     pub fn finished(run: &FinishedRun) -> DiagnosisPage {
         let what = match &run.findings[..] {
-            [] => "Run: no rule applies to it".into(),
+            [] if run.converged => "Run: the last attempt converged, and no rule applies".into(),
+            [] => "Run: it failed, and no rule applies to it".into(),
             [only] => format!("Run: {}", only.rule),
             [first, others @ ..] => format!("Run: {} (and {} more)", first.rule, others.len()),
         };

@@ -100,6 +100,7 @@ pub fn open(run: CalculixRun, deck: Option<Deck>) -> Result<OpenedRun, String> {
             .map(|cycle| cycle.iterations.clone())
             .collect(),
         correction_limit: run::CORRECTION_LIMIT / 100.0,
+        converged: rules::ended_converged(&run),
         findings: run.findings.clone(),
         shape: run.shape.clone(),
     });

@@ -16,6 +16,8 @@ pub mod shape;
 mod steps;
 mod supports;
 
+pub use record::ended_converged;
+
 use super::run::CalculixRun;
 use shape::DeckShape;
 use stickslip_core::RunFinding;

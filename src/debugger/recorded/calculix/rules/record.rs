@@ -120,7 +120,7 @@ pub fn is_complete(run: &CalculixRun, shape: &DeckShape) -> bool {
 }
 
 /// Did the last attempt converge? Then attempts that were cut on the way did not stop the run.
-fn ended_converged(run: &CalculixRun) -> bool {
+pub fn ended_converged(run: &CalculixRun) -> bool {
     run.files
         .attempts
         .last()
