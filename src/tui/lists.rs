@@ -101,7 +101,8 @@ impl App {
         }
     }
 
-    /// Takes the selected line of Try: repeats its trial in a branch, or tries it if the trials were interrupted.
+    /// Takes the selected line of Try: repeats its trial in a branch, or tries it if the trials were interrupted. Of a finished run
+    /// it copies the lines for the deck.
     fn take_try(&mut self, page: &DiagnosisPage, view: Option<&View>) -> Option<Effect> {
         let line = page.tries.get(self.answer.min(page.tries.len() - 1))?;
         let label = &line.label;
@@ -116,7 +117,7 @@ impl App {
                 ));
             }
             _ if view.is_some_and(|view| view.model.finished.is_some()) => {
-                self.say("change the deck and run CalculiX again");
+                return self.copy(None, view);
             }
             _ if line.typed.is_empty() => {
                 self.say(format!("{label}: nothing can try this for you"))

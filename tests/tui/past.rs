@@ -178,10 +178,10 @@ fn the_cure_of_the_diagnosis_is_copied_as_lines_of_the_deck() {
     {
         let mut debugger = debugger(&format!("causes/{}", row.deck));
         // Remedies of a finished run are the cures of its diagnosis.
-        for page in ["d", "r"] {
+        for [page, copies] in [["d", "Y"], ["r", "Y"], ["d", "Enter"]] {
             debugger.type_keys(page);
             assert_eq!(debugger.app.panes.focus, Pane::Diagnosis);
-            let copied = debugger.key(&keys::press("Y").unwrap());
+            let copied = debugger.key(&keys::press(copies).unwrap());
             let Some(TerminalRequest::Copy(text)) = copied else {
                 panic!("{}: {copied:?} {}", row.deck, debugger.app.message.text);
             };

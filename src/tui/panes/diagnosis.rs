@@ -47,9 +47,11 @@ pub const PANE: PaneEntry = PaneEntry {
 /// The diagnosis; of a finished run, the lines of the selected cure for its deck.
 fn copied(app: &App, view: &View) -> Result<NamedText, String> {
     if let Some(run) = &view.model.finished {
-        let cures = run.findings.iter().filter(|found| !found.lines.is_empty());
+        // As many as in the list Try.
+        let cures = run.findings.iter().filter(|found| !found.cure.is_empty());
         let cure = cures.take(app.answer + 1).last();
-        let cure = cure.ok_or("no cure with lines for the deck")?;
+        let cure = cure.filter(|cure| !cure.lines.is_empty());
+        let cure = cure.ok_or("this cure has no lines for the deck")?;
         return Ok(("the lines for the deck".into(), cure.lines.clone()));
     }
     let found = view.examination().flatten();
