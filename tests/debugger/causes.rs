@@ -152,6 +152,26 @@ fn faces_that_look_past_the_master_are_replaced_by_those_that_look_at_it() {
 }
 
 #[test]
+fn nodes_at_a_common_place_are_found_only_there_however_far_the_origin_is() {
+    let moved = |text: &str, by: f64| -> String {
+        let at = text.find("*ELEMENT").unwrap();
+        let nodes = text[..at]
+            .lines()
+            .map(|line| match line.split(", ").collect::<Vec<_>>()[..] {
+                [node, x, y, z] => format!("{node}, {}, {y}, {z}", x.parse::<f64>().unwrap() + by),
+                _ => line.to_owned(),
+            });
+        nodes.collect::<Vec<_>>().join("\n") + "\n" + &text[at..]
+    };
+    for by in [0.0, 1e7] {
+        let rules = causes(&moved(&text("unmerged"), by));
+        assert!(rules.contains(&"unmerged nodes"), "{by}: {rules:?}");
+        let rules = causes(&moved(&text("loose"), by));
+        assert!(!rules.contains(&"unmerged nodes"), "{by}: {rules:?}");
+    }
+}
+
+#[test]
 fn supports_that_a_later_step_removes_hold_nothing_in_it() {
     let steps = "*STEP\n*STATIC\n1., 1.\n*BOUNDARY\nSIDE, 1, 2, 0.\n*END STEP\n*STEP\n*STATIC\n1., 1.\n*BOUNDARY{}\nTOP, 1, 3, 0.\n*CLOAD\nSIDE, 1, 10.\n*END STEP\n";
     let middle = text("middle");

@@ -1,13 +1,13 @@
 //! Bodies that nothing connects with the others: no contact, no tie, no common node.
 
 use super::motion::{GroupMotion, pairs_of, words};
-use super::shape::DeckShape;
+use super::shape::{DeckShape, Vector};
 use super::supports::groups;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use stickslip_core::RunFinding;
 use stickslip_exchange::mesh::CellKind;
 
-/// Nodes closer than this are at the same place, in sizes of a body.
+/// Nodes closer than this are at the same place, relative to the extent of the mesh.
 const SAME: f64 = 1e-6;
 /// Number of nodes at the same place from which two bodies look like one.
 const SHARED: usize = 3;
@@ -49,13 +49,19 @@ pub fn unconnected(shape: &DeckShape) -> Vec<RunFinding> {
 
 /// Bodies with nodes at the same places that no contact or tie connects: meshes that were not merged.
 pub fn unmerged(shape: &DeckShape) -> Vec<RunFinding> {
-    let connected = |pair: [usize; 2]| {
+    // A surface may have faces of several bodies: then its slave nodes tell.
+    let connected = |groups: [usize; 2], nodes: &[[usize; 2]]| {
+        let nodes: BTreeSet<usize> = nodes.iter().flatten().copied().collect();
         let mut pairs = shape.pairs.iter().chain(&shape.ties);
-        shape.deck.is_incomplete
-            || pairs.any(|own| own.groups == pair || own.groups == [pair[1], pair[0]])
+        pairs.any(|own| {
+            let of_groups = own.groups == groups || own.groups == [groups[1], groups[0]];
+            of_groups || own.nodes.iter().any(|slave| nodes.contains(&slave.node))
+        })
     };
     let places = coincident(shape).into_iter();
-    let places = places.filter(|(pair, nodes)| nodes.len() >= SHARED && !connected(*pair));
+    let places = places.filter(|_| !shape.deck.is_incomplete);
+    let places =
+        places.filter(|(groups, nodes)| nodes.len() >= SHARED && !connected(*groups, nodes));
     let finding = |(pair, nodes): ([usize; 2], Vec<[usize; 2]>)| {
         let [one, other] = pair.map(|group| shape.group_name(group));
         let [first, second] = nodes[0].map(|node| shape.deck.nodes[node].label);
@@ -122,10 +128,9 @@ pub fn reduced_row(shape: &DeckShape) -> Vec<RunFinding> {
 /// Pairs of groups with their nodes at the same places.
 fn coincident(shape: &DeckShape) -> BTreeMap<[usize; 2], Vec<[usize; 2]>> {
     let nodes = || (0..shape.deck.nodes.len()).filter_map(|node| Some((node, shape.group(node)?)));
-    let largest = nodes()
-        .map(|(node, _)| shape.at(node).amax())
-        .fold(0.0, f64::max);
-    let cell = SAME * largest.max(f64::MIN_POSITIVE);
+    // Not relative to the coordinates: the origin may be far away.
+    let extents = [Vector::x(), Vector::y(), Vector::z()].map(|axis| shape.height(None, axis));
+    let cell = SAME * extents.into_iter().fold(f64::MIN_POSITIVE, f64::max);
     let mut known: HashMap<[i64; 3], Vec<(usize, usize)>> = HashMap::new();
     let mut pairs: BTreeMap<[usize; 2], Vec<[usize; 2]>> = BTreeMap::new();
     for (node, group) in nodes() {

@@ -24,7 +24,7 @@ use stickslip_core::RunFinding;
 
 /// What a rule looks at.
 enum Rule {
-    /// The mesh, its surfaces and ties. What it finds is wrong in a run that converged, too.
+    /// The mesh, its surfaces and ties. The findings also apply to a run that converged.
     Mesh(fn(&DeckShape) -> Vec<RunFinding>),
     /// The deck, before or after a run, given that its surfaces face each other.
     Deck(fn(&DeckShape) -> Vec<RunFinding>),

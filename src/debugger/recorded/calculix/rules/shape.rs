@@ -283,9 +283,12 @@ impl<'d> DeckShape<'d> {
         self.body_of[node].map(|body| self.group_of[body])
     }
 
-    /// Extent of a group along a direction.
-    pub fn height(&self, group: usize, along: Vector) -> f64 {
-        let nodes = (0..self.deck.nodes.len()).filter(|n| self.group(*n) == Some(group));
+    /// Extent of a group, or of all groups, along a direction.
+    pub fn height(&self, group: Option<usize>, along: Vector) -> f64 {
+        let nodes = (0..self.deck.nodes.len()).filter(|n| {
+            let own = self.group(*n);
+            own.is_some() && group.is_none_or(|group| own == Some(group))
+        });
         let at = nodes.map(|node| self.at(node).dot(&along));
         let (least, most) = extent(at);
         most - least

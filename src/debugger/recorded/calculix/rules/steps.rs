@@ -206,7 +206,7 @@ pub fn squeezed(shape: &DeckShape) -> Vec<RunFinding> {
             let material = faces.first().and_then(|face| shape.material(face.element));
             material.and_then(|k| shape.deck.materials[k].elastic)
         });
-        let [slave, master] = pair.groups.map(|group| shape.height(group, normal));
+        let [slave, master] = pair.groups.map(|group| shape.height(Some(group), normal));
         let (height, name) = match moduli {
             [Some((a, _)), Some((b, _))] if a > SOFT * b => {
                 (master, shape.group_name(pair.groups[1]))
