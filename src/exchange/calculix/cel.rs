@@ -41,6 +41,16 @@ pub enum Slave {
     Face([u32; 4]),
 }
 
+impl Slave {
+    /// The node, or the corners.
+    pub fn nodes(&self) -> &[u32] {
+        match self {
+            Slave::Node(node) => std::slice::from_ref(node),
+            Slave::Face(corners) => corners,
+        }
+    }
+}
+
 /// A slave in contact with a master face in an iteration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct ClosedContact {

@@ -1,7 +1,7 @@
 //! The lines of a deck with those of its include files, and their locations.
 
 /// A location: file number ([`Deck::files`](super::Deck::files)), line and column.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
 pub struct DeckLocation {
     /// 0 is the deck itself.
     pub file: usize,
