@@ -182,9 +182,10 @@ fn introduced(mut stream: &TcpStream, token: &str) -> io::Result<()> {
         .iter()
         .zip(token.as_bytes())
         .fold(0, |sum, (a, b)| sum | (a ^ b));
-    match line.len() == token.len() && differs == 0 {
-        true => Ok(()),
-        false => Err(io::ErrorKind::PermissionDenied.into()),
+    if line.len() == token.len() && differs == 0 {
+        Ok(())
+    } else {
+        Err(io::ErrorKind::PermissionDenied.into())
     }
 }
 

@@ -59,9 +59,10 @@ impl Start {
 
     /// The command as typed, or the address of the channel.
     pub fn typed(&self) -> String {
-        match self.command.is_empty() {
-            true => self.channel.to_string(),
-            false => self.command.join(" "),
+        if self.command.is_empty() {
+            self.channel.to_string()
+        } else {
+            self.command.join(" ")
         }
     }
 }
@@ -321,11 +322,11 @@ impl Link {
                 .trim_end()
                 .to_owned();
         }
-        match text.trim_start().starts_with('{') {
-            true => self.log.exchanged(Side::Answered, &text),
-            false => self
-                .log
-                .exchanged(Side::Noted, &format!("not a message: {text}")),
+        if text.trim_start().starts_with('{') {
+            self.log.exchanged(Side::Answered, &text)
+        } else {
+            self.log
+                .exchanged(Side::Noted, &format!("not a message: {text}"))
         }
         answer.map_err(|broken| {
             let letters = text.trim_start();
@@ -340,16 +341,17 @@ impl Link {
             // In a long line the error is near the column.
             let from = broken.at.map_or(0, |(_, column)| column.saturating_sub(40));
             let asked = waiting.asked.clone();
-            match letters.starts_with('{') {
-                true => Fault::Misformed {
+            if letters.starts_with('{') {
+                Fault::Misformed {
                     asked,
                     why,
                     line: text.chars().skip(from).take(SHOWN).collect(),
-                },
-                false => Fault::Junk {
+                }
+            } else {
+                Fault::Junk {
                     why,
                     line: text.chars().take(SHOWN).collect(),
-                },
+                }
             }
         })
     }

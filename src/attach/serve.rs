@@ -159,10 +159,13 @@ impl<'a> Server<'a> {
         let controls = &self.stepper.state().controls;
         let now = controls.friction.first().copied().unwrap_or_default();
         match name {
-            INCREMENT | FRICTION | COHESION => match value.is_number() {
-                true => Ok(orders::set(name, value, now)),
-                false => Err(format!("{name} must be a number, not {value}")),
-            },
+            INCREMENT | FRICTION | COHESION => {
+                if value.is_number() {
+                    Ok(orders::set(name, value, now))
+                } else {
+                    Err(format!("{name} must be a number, not {value}"))
+                }
+            }
             path if path.starts_with("settings.") => {
                 let mut spec = self.scene.spec.clone();
                 spec.settings = controls.settings;

@@ -71,13 +71,15 @@ fn target() -> String {
         (_, _, true) => "glibc",
         _ => "other libc",
     };
-    let linked = match cfg!(target_feature = "crt-static") {
-        true => ", statically linked",
-        false => "",
+    let linked = if cfg!(target_feature = "crt-static") {
+        ", statically linked"
+    } else {
+        ""
     };
-    let kind = match cfg!(debug_assertions) {
-        true => "; debug build",
-        false => "",
+    let kind = if cfg!(debug_assertions) {
+        "; debug build"
+    } else {
+        ""
     };
     format!(
         "{}/{}, {libc}{linked}{kind}",
@@ -150,9 +152,10 @@ fn variables(names: &[&str]) -> String {
         Some(format!("{name}={}", value.to_string_lossy()))
     });
     let words: Vec<String> = words.collect();
-    match words.is_empty() {
-        true => format!("none of these is set: {}", names.join(", ")),
-        false => words.join(" "),
+    if words.is_empty() {
+        format!("none of these is set: {}", names.join(", "))
+    } else {
+        words.join(" ")
     }
 }
 
@@ -172,9 +175,10 @@ fn words(answers: &Answers) -> String {
         Some(false) => "no",
         None => "not reported",
     };
-    let clipboard = match answers.clipboard() {
-        true => "yes",
-        false => "not reported",
+    let clipboard = if answers.clipboard() {
+        "yes"
+    } else {
+        "not reported"
     };
     let widths = match answers.other_widths() {
         None => "not reported".into(),

@@ -375,9 +375,10 @@ fn state(
     let mut seen = RunHistory::at_start(&mut stepper, &parts);
     // The scene file itself needs no solve.
     let solves = kind.extension != "ron" || args.frozen;
-    let ended = match solves {
-        true => drive(&course, args.at, &mut stepper, &mut seen, interrupt)?,
-        false => RunStop::There(String::new()),
+    let ended = if solves {
+        drive(&course, args.at, &mut stepper, &mut seen, interrupt)?
+    } else {
+        RunStop::There(String::new())
     };
     let ended = match ended {
         RunStop::There(ended) => ended,

@@ -87,9 +87,10 @@ impl Grids {
     /// If it cannot be written.
     pub fn see(&mut self, stepper: &Stepper) -> Result<(), Error> {
         let event = stepper.event();
-        match self.each.wants(event) {
-            true => self.write(stepper, stepper.state(), Some(event), event.load_factor),
-            false => Ok(()),
+        if self.each.wants(event) {
+            self.write(stepper, stepper.state(), Some(event), event.load_factor)
+        } else {
+            Ok(())
         }
     }
 

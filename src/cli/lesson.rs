@@ -60,9 +60,10 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         None => Lesson::open(name)?,
     };
     if args.check || args.sheet {
-        let text = match args.check {
-            true => check(lesson)?,
-            false => sheet(lesson)?,
+        let text = if args.check {
+            check(lesson)?
+        } else {
+            sheet(lesson)?
         };
         say(&text)?;
         return Ok(Exit::Good);
@@ -94,9 +95,12 @@ fn write_hand_in(to: &Path, force: bool) -> Result<Exit, Error> {
 
 /// Prints the table of a class, lessons in teaching order. Files that cannot be read are named and left out.
 fn collect(files: &[PathBuf]) -> Result<Exit, Error> {
-    let read = |file: &PathBuf| match file.exists() {
-        true => Progress::read(file).map_err(Error::usage),
-        false => Err(usage!("{}: no such file", file.display())),
+    let read = |file: &PathBuf| {
+        if file.exists() {
+            Progress::read(file).map_err(Error::usage)
+        } else {
+            Err(usage!("{}: no such file", file.display()))
+        }
     };
     let (class, unread): (Vec<_>, Vec<_>) = files.iter().map(read).partition(Result::is_ok);
     for error in unread.iter().filter_map(|result| result.as_ref().err()) {

@@ -111,9 +111,10 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
             judged,
         };
         Ok(Report {
-            table: match args.totals {
-                true => survey.totals(),
-                false => survey.csv(),
+            table: if args.totals {
+                survey.totals()
+            } else {
+                survey.csv()
             },
             lines: survey_lines(&survey),
             warnings: Vec::new(),

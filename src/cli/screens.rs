@@ -110,8 +110,9 @@ fn listed() -> String {
 /// Reads `120x40`.
 fn size(text: &str) -> Result<(u16, u16), String> {
     let (width, height) = super::export::size(text)?;
-    match [width, height].iter().all(|side| (10..=400).contains(side)) {
-        true => Ok((width, height)),
-        false => Err("a screen has 10 to 400 columns and rows".into()),
+    if [width, height].iter().all(|side| (10..=400).contains(side)) {
+        Ok((width, height))
+    } else {
+        Err("a screen has 10 to 400 columns and rows".into())
     }
 }

@@ -74,9 +74,10 @@ impl SweepArgs {
         if self.shard.is_some() && self.log.is_none() && !self.out.writes() {
             return wrong("needs an output file: --csv FILE for rows, --log FILE for --merge");
         }
-        Ok(match self.merge.is_empty() {
-            true => ResultStorage::Log(self.log.clone(), shard),
-            false => ResultStorage::Merge(self.merge.clone()),
+        Ok(if self.merge.is_empty() {
+            ResultStorage::Log(self.log.clone(), shard)
+        } else {
+            ResultStorage::Merge(self.merge.clone())
         })
     }
 

@@ -110,9 +110,10 @@ fn begins_matrix(words: &Words<'_>, size: usize, contacts: usize) -> bool {
 /// Rejects a wrong number of rows if the number of columns, which follows, is that of a local problem.
 fn squared(words: &Words<'_>, rows: usize, local: usize, of_rows: &str) -> Result<(), FormatError> {
     let columns = words.peek().and_then(|word| word.parse::<usize>().ok());
-    match rows != local && columns == Some(local) {
-        true => Err(words.broken(format!("{of_rows} is {rows}; it must be {local}"))),
-        false => Ok(()),
+    if rows != local && columns == Some(local) {
+        Err(words.broken(format!("{of_rows} is {rows}; it must be {local}")))
+    } else {
+        Ok(())
     }
 }
 
@@ -291,9 +292,10 @@ fn sparse(
         .parse()
         .map_err(|_| words.unlike(text, "the number of entries, a whole number"))?;
     words.line();
-    let (list, lists, others) = match by_rows {
-        true => ("row", rows, columns),
-        false => ("col", columns, rows),
+    let (list, lists, others) = if by_rows {
+        ("row", rows, columns)
+    } else {
+        ("col", columns, rows)
     };
     let what = format!("an entry of {name}");
     let mut entries = Vec::new();

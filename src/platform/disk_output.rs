@@ -97,9 +97,12 @@ impl Output {
 /// Opens a device or a pipe for writing; fails at once for a pipe without a reader.
 fn open_direct(path: &Path) -> io::Result<File> {
     let open = system::set_nonblocking(File::options().write(true)).open(path);
-    let open = open.map_err(|error| match system::is_unread_pipe(&error) {
-        true => io::Error::other("is a pipe without a reader"),
-        false => error,
+    let open = open.map_err(|error| {
+        if system::is_unread_pipe(&error) {
+            io::Error::other("is a pipe without a reader")
+        } else {
+            error
+        }
     })?;
     // Blocking writes, since the reader may be slow.
     system::set_blocking(&open)?;
@@ -138,9 +141,10 @@ impl ReadyFile {
         let Some(file) = self.file else {
             return Ok(());
         };
-        let placed = match self.overwrite {
-            true => file.persist(&self.target),
-            false => file.persist_noclobber(&self.target),
+        let placed = if self.overwrite {
+            file.persist(&self.target)
+        } else {
+            file.persist_noclobber(&self.target)
         };
         placed.map(drop).map_err(|e| match e.error.kind() {
             io::ErrorKind::AlreadyExists if !self.overwrite => FileError::Exists(self.target),

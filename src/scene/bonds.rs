@@ -99,9 +99,10 @@ fn left_out(scene: &Scene) -> Option<String> {
 fn range(values: &[f64]) -> String {
     let least = values.iter().copied().fold(f64::INFINITY, f64::min);
     let largest = values.iter().copied().fold(0.0, f64::max);
-    match least == largest {
-        true => sig4(least),
-        false => format!("{} to {}", sig4(least), sig4(largest)),
+    if least == largest {
+        sig4(least)
+    } else {
+        format!("{} to {}", sig4(least), sig4(largest))
     }
 }
 

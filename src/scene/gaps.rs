@@ -80,15 +80,17 @@ pub fn start_gaps(model: &Model) -> Vec<StartGaps> {
 pub fn words(model: &Model) -> Vec<String> {
     let line = |found: StartGaps| {
         let name = &model.surfaces[found.surface].name;
-        let [least, largest] = found
-            .range
-            .map(|gap| match gap.abs() <= NONE * model.length {
-                true => 0.0,
-                false => gap,
-            });
-        let range = match least == largest {
-            true => sig4(least),
-            false => format!("{} to {}", sig4(least), sig4(largest)),
+        let [least, largest] = found.range.map(|gap| {
+            if gap.abs() <= NONE * model.length {
+                0.0
+            } else {
+                gap
+            }
+        });
+        let range = if least == largest {
+            sig4(least)
+        } else {
+            format!("{} to {}", sig4(least), sig4(largest))
         };
         let inside = match found.inside.len() {
             0 => String::new(),

@@ -246,9 +246,10 @@ fn usable(name: &str, dimension: usize) -> String {
         .map(|c| if bad(c) { '_' } else { c })
         .collect();
     let taken = limits::TAKEN.contains(&name.as_str()) || name.chars().all(|c| c.is_ascii_digit());
-    match taken {
-        true => format!("{}{name}", ["point", "line", "surface"][dimension]),
-        false => name,
+    if taken {
+        format!("{}{name}", ["point", "line", "surface"][dimension])
+    } else {
+        name
     }
 }
 

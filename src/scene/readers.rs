@@ -186,9 +186,10 @@ impl FileKind {
         let cel = calculix::cel_of(file).filter(|_| self == FileKind::Progress);
         let cel = cel.map(|cel| cel.display().to_string());
         let file = shown::cut(cel.as_deref().unwrap_or(file), 120);
-        let file = match file.contains(char::is_whitespace) {
-            true => format!("'{file}'"),
-            false => file,
+        let file = if file.contains(char::is_whitespace) {
+            format!("'{file}'")
+        } else {
+            file
         };
         let command = self.own()?.command;
         (!command.is_empty()).then(|| command.replace("{}", &file))
@@ -249,11 +250,10 @@ impl Scene {
         if let Some(problem) = problems::opened::from_file(name, overrides) {
             return Scene::assemble(name, "", problem?.spec(), overrides, Vec::new());
         }
-        let text = match deck::is_called_so(name) {
-            true => {
-                deck::text(std::path::Path::new(name)).map_err(|error| read::unread(name, error))
-            }
-            false => read::text(name),
+        let text = if deck::is_called_so(name) {
+            deck::text(std::path::Path::new(name)).map_err(|error| read::unread(name, error))
+        } else {
+            read::text(name)
         };
         let text = text.map_err(|mut error| {
             if !disk::exists(name) {

@@ -151,9 +151,10 @@ impl Chart {
         let file: File = parse(name, text)?;
         Ok(Chart {
             title: String::new(),
-            truth: match file.finest.is_empty() {
-                true => truth(&file.scene),
-                false => Truth::Run(file.finest),
+            truth: if file.finest.is_empty() {
+                truth(&file.scene)
+            } else {
+                Truth::Run(file.finest)
             },
             scene: file.scene,
             set: file.set,
@@ -194,9 +195,10 @@ fn series(along: &Vary, others: &[Vary]) -> Vec<Series> {
 /// The most accurate reference for a scene. A user's file is not the built-in scene of the same name.
 fn truth(scene: &str) -> Truth {
     let builtin = builtin::find(scene).is_some() && !std::path::Path::new(scene).is_file();
-    match builtin && Reference::builtin(scene, &[]).is_some() {
-        true => Truth::Builtin,
-        false => Truth::Finest,
+    if builtin && Reference::builtin(scene, &[]).is_some() {
+        Truth::Builtin
+    } else {
+        Truth::Finest
     }
 }
 

@@ -121,9 +121,10 @@ fn rows(text: &mut String, leading: &str, plan: &Plan, run: &Run) {
 /// A text as a field of a CSV file.
 pub fn field(text: &str) -> String {
     let text = shown::line(text);
-    match text.contains([',', '"']) {
-        true => format!("\"{}\"", text.replace('"', "\"\"")),
-        false => text.into_owned(),
+    if text.contains([',', '"']) {
+        format!("\"{}\"", text.replace('"', "\"\""))
+    } else {
+        text.into_owned()
     }
 }
 

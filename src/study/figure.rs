@@ -75,9 +75,10 @@ pub fn short_names(paths: &[String]) -> Vec<String> {
     let last = |path: &String| path.rsplit('.').next().unwrap_or(path).to_owned();
     let short: Vec<String> = paths.iter().map(last).collect();
     let unique = |name: &String| short.iter().filter(|other| *other == name).count() == 1;
-    match short.iter().all(unique) {
-        true => short,
-        false => paths.to_vec(),
+    if short.iter().all(unique) {
+        short
+    } else {
+        paths.to_vec()
     }
 }
 

@@ -66,9 +66,10 @@ impl LogAxis {
 
 /// Formats a number of an axis.
 pub fn written(value: f64) -> String {
-    match (1e-3..1e5).contains(&value) {
-        true => format!("{value}"),
-        false => format!("{value:e}"),
+    if (1e-3..1e5).contains(&value) {
+        format!("{value}")
+    } else {
+        format!("{value:e}")
     }
 }
 

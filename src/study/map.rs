@@ -322,14 +322,15 @@ impl Map {
             0 => String::new(),
             n => format!(" and {n} more (the table has them)"),
         };
-        let compared = match names.is_empty() {
-            true => "Nothing was compared: no two runs solve the same problem.".to_owned(),
-            false => format!(
+        let compared = if names.is_empty() {
+            "Nothing was compared: no two runs solve the same problem.".to_owned()
+        } else {
+            format!(
                 "Ends are compared with those of {}{more}; wrong: a monitor differs by more than {} of the largest value \
                  of its kind.",
                 names.join("; "),
                 self.tolerance
-            ),
+            )
         };
         vec![made, compared, origin::made_by()]
     }

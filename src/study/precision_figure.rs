@@ -82,17 +82,19 @@ impl ErrorPanel<'_> {
     }
 
     fn error_of(&self, point: &Point) -> Option<f64> {
-        match self.is_force {
-            true => point.force_error,
-            false => point.error,
+        if self.is_force {
+            point.force_error
+        } else {
+            point.error
         }
     }
 
     /// The point at these fractions of the two axes.
     fn at_parts(&self, cost: f64, error: f64) -> (f64, f64) {
-        match self.error_on_x {
-            true => self.axes.at(error, cost),
-            false => self.axes.at(cost, error),
+        if self.error_on_x {
+            self.axes.at(error, cost)
+        } else {
+            self.axes.at(cost, error)
         }
     }
 
@@ -117,18 +119,15 @@ impl ErrorPanel<'_> {
         let (left, right) = (self.axes.left, self.axes.left + self.axes.size.0);
         let (top, bottom) = (self.axes.top, self.axes.top + self.axes.size.1);
         let colour = (250, 240, 240);
-        let words = match self.error_on_x {
-            true => {
-                sheet.bar((right + 6.0, top), (RAIL - 6.0, bottom - top), colour);
-                (
-                    (right + 0.5 * RAIL + 3.0, bottom + 0.8 * LABEL),
-                    Anchor::Middle,
-                )
-            }
-            false => {
-                sheet.bar((left, top - RAIL), (right - left, RAIL - 6.0), colour);
-                ((left - 8.0, top - 0.5 * RAIL - 3.0), Anchor::Right)
-            }
+        let words = if self.error_on_x {
+            sheet.bar((right + 6.0, top), (RAIL - 6.0, bottom - top), colour);
+            (
+                (right + 0.5 * RAIL + 3.0, bottom + 0.8 * LABEL),
+                Anchor::Middle,
+            )
+        } else {
+            sheet.bar((left, top - RAIL), (right - left, RAIL - 6.0), colour);
+            ((left - 8.0, top - 0.5 * RAIL - 3.0), Anchor::Right)
         };
         sheet.text(words.0, "failed", SMALL, BLACK, words.1);
         self.draw_axes(sheet);
@@ -175,12 +174,11 @@ impl ErrorPanel<'_> {
         let (from, to) = (self.at_parts(0.0, part), self.at_parts(1.0, part));
         sheet.dashed(&[from, to], 1.2, GREY);
         let wide = widest([words], SMALL)?;
-        let middle = match self.error_on_x {
-            true => {
-                let most = LEFT + PLOT.0 - RAIL - 4.0 - 0.5 * wide;
-                ((from.0 + 6.0 + 0.5 * wide).min(most), from.1 - 12.0)
-            }
-            false => (to.0 - 4.0 - 0.5 * wide, to.1 - 9.0),
+        let middle = if self.error_on_x {
+            let most = LEFT + PLOT.0 - RAIL - 4.0 - 0.5 * wide;
+            ((from.0 + 6.0 + 0.5 * wide).min(most), from.1 - 12.0)
+        } else {
+            (to.0 - 4.0 - 0.5 * wide, to.1 - 9.0)
         };
         let size = (wide, 1.2 * SMALL);
         sheet.text(middle, words, SMALL, GREY, Anchor::Middle);
@@ -203,16 +201,13 @@ impl ErrorPanel<'_> {
             ticks.map(move |value| (axis.part(value), written(value)))
         };
         let cost = chart.cost.axis();
-        match self.error_on_x {
-            true => {
-                let x = (error.as_str(), numbers(self.error, 9));
-                self.axes.draw(sheet, x, (cost, numbers(self.cost, 12)));
-            }
-            false => {
-                let x = (cost, numbers(self.cost, 9));
-                self.axes
-                    .draw(sheet, x, (error.as_str(), numbers(self.error, 12)));
-            }
+        if self.error_on_x {
+            let x = (error.as_str(), numbers(self.error, 9));
+            self.axes.draw(sheet, x, (cost, numbers(self.cost, 12)));
+        } else {
+            let x = (cost, numbers(self.cost, 9));
+            self.axes
+                .draw(sheet, x, (error.as_str(), numbers(self.error, 12)));
         }
     }
 
@@ -258,9 +253,10 @@ impl ErrorPanel<'_> {
                 sheet.line(&[self.at(least, error), self.at(most, error)], 1.0, GREY);
             }
             let place = self.place(point);
-            match point.failed.is_some() {
-                true => sheet.cross(place, 5.0, CROSS),
-                false => sheet.series_marker(place, k),
+            if point.failed.is_some() {
+                sheet.cross(place, 5.0, CROSS)
+            } else {
+                sheet.series_marker(place, k)
             }
             taken.take(Patch::about(place, (14.0, 14.0)));
         }
@@ -292,16 +288,18 @@ impl ErrorPanel<'_> {
             (x + 10.0, y - 10.0)
         };
         let (from, to) = (corner(0.25), corner(0.75));
-        let third = match self.error_on_x {
-            true => (from.0, to.1),
-            false => (to.0, from.1),
+        let third = if self.error_on_x {
+            (from.0, to.1)
+        } else {
+            (to.0, from.1)
         };
         sheet.line(&[from, third, to, from], 1.2, BLACK);
         let horizontal = (0.5 * (from.0 + to.0), third.1 - 8.0);
         let vertical = (third.0 + 8.0, 0.5 * (from.1 + to.1));
-        let (one, falls) = match self.error_on_x {
-            true => (vertical, horizontal),
-            false => (horizontal, vertical),
+        let (one, falls) = if self.error_on_x {
+            (vertical, horizontal)
+        } else {
+            (horizontal, vertical)
         };
         sheet.text(one, "1", SMALL, BLACK, Anchor::Middle);
         let anchor = if self.error_on_x {
@@ -353,9 +351,10 @@ impl ErrorPanel<'_> {
                 break;
             }
         }
-        match key.is_empty() {
-            true => Ok(key),
-            false => Ok(vec![key.join(";  ")]),
+        if key.is_empty() {
+            Ok(key)
+        } else {
+            Ok(vec![key.join(";  ")])
         }
     }
 

@@ -110,9 +110,10 @@ fn spread(value: &str) -> Result<Vec<String>, NoVary> {
     }
     let at = |k: u32| {
         let part = f64::from(k) / f64::from(count - 1);
-        let value = match even_ratios {
-            true => low * (high / low).powf(part),
-            false => low + (high - low) * part,
+        let value = if even_ratios {
+            low * (high / low).powf(part)
+        } else {
+            low + (high - low) * part
         };
         // Formatted as typed, without the round-off of the division.
         format!("{value:.9e}")
@@ -288,9 +289,10 @@ impl Visitor<'_> for WordVisitor {
     }
 
     fn visit_f64<E: serde::de::Error>(self, number: f64) -> Result<Word, E> {
-        match number.is_finite() {
-            true => Ok(Word(format!("{number:?}"))),
-            false => Err(E::custom("the number must be finite")),
+        if number.is_finite() {
+            Ok(Word(format!("{number:?}")))
+        } else {
+            Err(E::custom("the number must be finite"))
         }
     }
 

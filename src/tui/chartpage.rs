@@ -99,9 +99,10 @@ impl ChartPage {
 
     /// The shown error of a run.
     pub(super) fn error(&self, point: &Point) -> Option<f64> {
-        match self.is_force && self.has_forces() {
-            true => point.force_error,
-            false => point.error,
+        if self.is_force && self.has_forces() {
+            point.force_error
+        } else {
+            point.error
         }
     }
 

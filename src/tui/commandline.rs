@@ -130,9 +130,12 @@ impl CommandLine {
         let cursor = theme.text.add_modifier(Modifier::REVERSED);
         let at = self.input.cursor();
         let typed = self.text().chars().chain([' ']).enumerate();
-        let typed = typed.map(|(place, letter)| match place == at {
-            true => (letter, cursor),
-            false => (letter, theme.text),
+        let typed = typed.map(|(place, letter)| {
+            if place == at {
+                (letter, cursor)
+            } else {
+                (letter, theme.text)
+            }
         });
         let mut rows: Vec<Vec<Span>> = vec![Vec::new()];
         let mut used = 0;
@@ -296,9 +299,10 @@ fn keys(entry: &'static ActionEntry, context: &Context) -> String {
         Some(keymap) => keymap.keys(entry).collect::<Vec<_>>().join(" "),
         None => entry.keys.join(" "),
     };
-    match keys.is_empty() {
-        true => keys,
-        false => format!("[{keys}]   "),
+    if keys.is_empty() {
+        keys
+    } else {
+        format!("[{keys}]   ")
     }
 }
 
@@ -312,9 +316,12 @@ fn choices(text: &str, context: &Context) -> String {
                     .entry(name.trim())
                     .is_ok_and(|entry| entry.offered(context).is_err())
             };
-            let words = found.iter().map(|name| match grey(name) {
-                true => format!("({})", name.trim()),
-                false => name.clone(),
+            let words = found.iter().map(|name| {
+                if grey(name) {
+                    format!("({})", name.trim())
+                } else {
+                    name.clone()
+                }
             });
             words.collect::<Vec<_>>().join("  ")
         }

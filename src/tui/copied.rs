@@ -14,9 +14,10 @@ pub fn row(app: &App, view: &View) -> Result<NamedText, String> {
     if view.model.contacts.is_empty() {
         return Err("this scene has no slave nodes".into());
     }
-    let next = match app.learning.hides(view, slave) {
-        true => "?",
-        false => names::mode(view.mode(slave)),
+    let next = if app.learning.hides(view, slave) {
+        "?"
+    } else {
+        names::mode(view.mode(slave))
     };
     let name = view.slave(slave);
     let before = names::mode(view.mode_before(slave));

@@ -37,9 +37,10 @@ impl App {
 
     /// The mode of a slave node; the one before this iteration if the next one is hidden.
     pub fn shown_mode(&self, view: &View, slave: usize) -> Mode {
-        match self.learning.hides(view, slave) {
-            true => view.mode_before(slave),
-            false => view.mode(slave),
+        if self.learning.hides(view, slave) {
+            view.mode_before(slave)
+        } else {
+            view.mode(slave)
         }
     }
 

@@ -177,9 +177,10 @@ fn enter() -> io::Result<()> {
     enable_raw_mode()?;
     signals::read_without_waiting()?;
     execute!(stdout(), EnterAlternateScreen, EnableBracketedPaste, Hide)?;
-    match MOUSE.load(Ordering::SeqCst) {
-        true => console::report_mouse(true),
-        false => Ok(()),
+    if MOUSE.load(Ordering::SeqCst) {
+        console::report_mouse(true)
+    } else {
+        Ok(())
     }
 }
 

@@ -57,9 +57,10 @@ pub fn pictures(
             travelled += (event.load_factor - load).abs();
             load = event.load_factor;
         }
-        match travelled < part * whole {
-            true => ControlFlow::Continue(()),
-            false => ControlFlow::Break(()),
+        if travelled < part * whole {
+            ControlFlow::Continue(())
+        } else {
+            ControlFlow::Break(())
         }
     });
     let (state, event) = (stepper.state(), stepper.event());

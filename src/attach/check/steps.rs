@@ -33,9 +33,10 @@ pub fn stepping(report: &mut Report, mut trial: Trial) -> Vec<State> {
     let mut times = Vec::new();
     let mut end = Ok(());
     let enough = |states: &[State]| {
-        let most = match states.iter().any(is_settled) {
-            true => STEPS,
-            false => MOST_STEPS,
+        let most = if states.iter().any(is_settled) {
+            STEPS
+        } else {
+            MOST_STEPS
         };
         states.len() >= most
     };
@@ -125,12 +126,13 @@ fn prompt(trial: &mut Trial) -> Result<Outcome, Fault> {
     }
     let each = millis(began.elapsed()) / f64::from(ROUNDS);
     let found = format!("{each:.2} ms per request without work");
-    Ok(match each <= PROMPT {
-        true => good(found),
-        false => fails(
+    Ok(if each <= PROMPT {
+        good(found)
+    } else {
+        fails(
             found,
             "read and write whole lines without delays: no polling with sleeps, and a flush after each line",
-        ),
+        )
     })
 }
 
@@ -418,9 +420,10 @@ pub fn determinism(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault>
                 MEND,
             ));
         }
-        match numbers(then) == numbers(&now) {
-            true => texts = true,
-            false => bits = bits.or(Some(number)),
+        if numbers(then) == numbers(&now) {
+            texts = true
+        } else {
+            bits = bits.or(Some(number))
         }
     }
     Ok(good(match bits {
@@ -445,9 +448,10 @@ fn numbers(state: &State) -> State {
 
 /// How two states differ.
 pub fn difference(then: &State, now: &State) -> String {
-    let rest = match numbers(then) == numbers(now) {
-        true => "only texts differ",
-        false => "numbers differ in the last digits",
+    let rest = if numbers(then) == numbers(now) {
+        "only texts differ"
+    } else {
+        "numbers differ in the last digits"
     };
     otherwise(then, now).unwrap_or_else(|| rest.into())
 }

@@ -414,9 +414,10 @@ fn one_of<T: Copy>(
 fn monitor(name: &str, context: &Context) -> Result<usize, ParseError> {
     let monitors = &model(context)?.monitors;
     let found = monitors.iter().position(|monitor| monitor.name == name);
-    found.ok_or_else(|| match monitors.is_empty() {
-        true => ParseError::NoMonitors,
-        false => {
+    found.ok_or_else(|| {
+        if monitors.is_empty() {
+            ParseError::NoMonitors
+        } else {
             let names: Vec<_> = monitors.iter().map(|m| m.name.as_str()).collect();
             let (name, monitors) = (name.to_string(), names.join(", "));
             ParseError::NoMonitor { name, monitors }

@@ -77,9 +77,10 @@ pub fn exact(word: &str, context: &Context) -> Result<usize, ParseError> {
         return Ok(slave);
     }
     let (word, slaves) = (word.to_string(), some_names(model));
-    Err(match node.is_some() {
-        true => ParseError::NoSlave { word, slaves },
-        false => ParseError::NoNode { word, slaves },
+    Err(if node.is_some() {
+        ParseError::NoSlave { word, slaves }
+    } else {
+        ParseError::NoNode { word, slaves }
     })
 }
 

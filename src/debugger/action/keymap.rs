@@ -181,9 +181,10 @@ impl Keymap {
     pub fn listed(&self) -> Vec<(Group, Vec<String>)> {
         let line = |entry: &ActionEntry| {
             let keys: Vec<String> = self.keys(entry).map(|key| format!("{key:?}")).collect();
-            let mark = match self.changed.contains_key(entry.name) {
-                true => "   // changed",
-                false => "",
+            let mark = if self.changed.contains_key(entry.name) {
+                "   // changed"
+            } else {
+                ""
             };
             format!("{:?}: [{}],{mark}", entry.name, keys.join(", "))
         };
@@ -231,14 +232,15 @@ fn check(key: &str) -> Result<(), String> {
             None => NAMED.contains(&key),
         },
     };
-    match known {
-        true => Ok(()),
-        false => Err(format!(
+    if known {
+        Ok(())
+    } else {
+        Err(format!(
             "unknown key {}{}; keys: a letter, F1 to F12, Shift-F1, Ctrl-a, {}",
             quoted(key),
             did_you_mean(key, NAMED),
             NAMED.join(", ")
-        )),
+        ))
     }
 }
 

@@ -188,9 +188,10 @@ fn same(tree: &Tree, a: (usize, usize), b: (usize, usize)) -> Option<Sameness> {
         .chain(&g)
         .fold(scale(x).max(scale(y)), |m, f| m.max(f.abs()));
     let moved = apart(&x.state.u, &y.state.u, tree.model().length);
-    Some(match moved || apart(&f, &g, largest) {
-        true => Sameness::Different,
-        false => Sameness::Same,
+    Some(if moved || apart(&f, &g, largest) {
+        Sameness::Different
+    } else {
+        Sameness::Same
     })
 }
 
@@ -243,8 +244,9 @@ fn differing(model: &Model, a: &Side, b: &Side) -> String {
         let [a, b] = [a.nodes[s].next, b.nodes[s].next].map(names::mode);
         format!("{} {a}, {b}", names::slave(model, s))
     };
-    match nodes.is_empty() {
-        true => ", with the same modes".into(),
-        false => format!(": {}", first_of(nodes.iter().map(describe), SHOWN, "; ")),
+    if nodes.is_empty() {
+        ", with the same modes".into()
+    } else {
+        format!(": {}", first_of(nodes.iter().map(describe), SHOWN, "; "))
     }
 }

@@ -149,9 +149,12 @@ pub fn rounds(strips: &[Strip]) -> Option<Rounds> {
     let values = by_modes.is_none();
     if let Some(round) = by_modes.or_else(by_values) {
         let period = round.len();
-        let again = |back: usize| match values {
-            true => within(back + 1, back + 1 + period, SAME_MARGIN),
-            false => same(back, back + period),
+        let again = |back: usize| {
+            if values {
+                within(back + 1, back + 1 + period, SAME_MARGIN)
+            } else {
+                same(back, back + period)
+            }
         };
         let until = tail.len() - usize::from(values);
         let rounds = (0..).take_while(|&back| back + period <= until && again(back));
@@ -201,9 +204,10 @@ pub fn words(model: &Model, rounds: &Rounds, tells_since: bool) -> String {
             since,
             members,
         } => {
-            let since = match tells_since {
-                true => format!(" from step {since}"),
-                false => String::new(),
+            let since = if tells_since {
+                format!(" from step {since}")
+            } else {
+                String::new()
             };
             let keeps = |(_, phases): &&(usize, Vec<Phase>)| {
                 phases.iter().all(|(mode, _)| *mode == phases[0].0)

@@ -96,12 +96,13 @@ fn way(
                     .map(|slave| names::slave(model, slave))
                     .collect();
                 let more = if differ.len() > NAMED { ", …" } else { "" };
-                let differ = match differ.is_empty() {
-                    true => String::new(),
-                    false => format!(
+                let differ = if differ.is_empty() {
+                    String::new()
+                } else {
+                    format!(
                         "; ≠ own rules at {}{more}",
                         differ[..differ.len().min(NAMED)].join(", ")
-                    ),
+                    )
                 };
                 (strip, report::outcome(model, event) + &differ)
             }

@@ -123,9 +123,10 @@ impl Timeline {
     /// Rejects a new branch when the branches have used up their memory budget.
     pub(super) fn check_room(&self) -> Result<(), Refusal> {
         let (taken, most) = (self.tree.permanent_bytes(), self.tree.budget().branches);
-        match taken < most {
-            true => Ok(()),
-            false => Err(Refusal::NoRoom { taken, most }),
+        if taken < most {
+            Ok(())
+        } else {
+            Err(Refusal::NoRoom { taken, most })
         }
     }
 

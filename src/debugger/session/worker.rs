@@ -300,17 +300,18 @@ fn run(
         ControlFlow::Continue(())
     });
     let end = match end {
-        Ok(RunEnd::Stopped(is_slice_over)) => match is_slice_over? {
-            true => {
+        Ok(RunEnd::Stopped(is_slice_over)) => {
+            if is_slice_over? {
                 return Some(Some(Steps::Run {
                     before,
                     unit,
                     count: left,
                     breakpoints,
                 }));
+            } else {
+                RunEnd::Spent
             }
-            false => RunEnd::Spent,
-        },
+        }
         Ok(end) => end,
         Err(lost) => return send_last(news, Message::Lost(lost)),
     };

@@ -188,9 +188,10 @@ impl LessonProgress {
 
     /// The step (from 0) at which a lesson with this number of steps resumes: 0 if it was finished or has changed.
     pub fn resumes_at(&self, steps: usize) -> usize {
-        match self.ended == 0 && self.of == steps {
-            true => self.steps.min(steps.saturating_sub(1)),
-            false => 0,
+        if self.ended == 0 && self.of == steps {
+            self.steps.min(steps.saturating_sub(1))
+        } else {
+            0
         }
     }
 

@@ -420,9 +420,10 @@ impl Template {
             Piece::Value(quantity) => quantity.looks_ahead() || Some(quantity) == asked,
             Piece::Words(_) => false,
         };
-        match self.0.iter().any(tells) {
-            true => Err(LessonError::TellsAnswer),
-            false => Ok(()),
+        if self.0.iter().any(tells) {
+            Err(LessonError::TellsAnswer)
+        } else {
+            Ok(())
         }
     }
 

@@ -153,12 +153,13 @@ impl TutorQuestion {
 
     /// The reply to a wrong answer that allows another attempt.
     pub(super) fn reply_to_wrong(&self, word: &str) -> String {
-        match self.has_wrong_sign(word) {
-            true => format!(
+        if self.has_wrong_sign(word) {
+            format!(
                 "No: the amount is right, but the sign is wrong. {}",
                 self.help()
-            ),
-            false => format!("No. {}", self.help()),
+            )
+        } else {
+            format!("No. {}", self.help())
         }
     }
 

@@ -319,9 +319,10 @@ impl Tutor {
             good: Some(good),
         });
         self.done = good;
-        match good {
-            true => self.note("done", true),
-            false => self.answers += 1,
+        if good {
+            self.note("done", true)
+        } else {
+            self.answers += 1
         }
     }
 

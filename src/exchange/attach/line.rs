@@ -51,9 +51,10 @@ impl<R: BufRead> LineReader<R> {
             Some(last) => {
                 bytes.push(last);
                 let begun = beginning(&bytes);
-                match bytes.len() > self.most {
-                    true => Line::TooLong(begun),
-                    false => Line::Torn(begun),
+                if bytes.len() > self.most {
+                    Line::TooLong(begun)
+                } else {
+                    Line::Torn(begun)
                 }
             }
         })

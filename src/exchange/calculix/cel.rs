@@ -208,15 +208,12 @@ impl CelReader {
             let next = closed[k];
             let same = kept > range.start
                 && (closed[kept - 1].slave, closed[kept - 1].master) == (next.slave, next.master);
-            match same {
-                true => {
-                    let elements = &mut closed[kept - 1].elements;
-                    *elements = elements.saturating_add(next.elements);
-                }
-                false => {
-                    closed[kept] = next;
-                    kept += 1;
-                }
+            if same {
+                let elements = &mut closed[kept - 1].elements;
+                *elements = elements.saturating_add(next.elements);
+            } else {
+                closed[kept] = next;
+                kept += 1;
             }
         }
         closed.truncate(kept);

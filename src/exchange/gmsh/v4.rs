@@ -135,10 +135,11 @@ fn within(cursor: &Cursor<'_>, alike: u64, left: usize, what: &str) -> Result<us
 
 /// Rejects blocks with fewer items than declared.
 fn whole(cursor: &Cursor<'_>, found: usize, count: usize, what: &str) -> Result<(), FormatError> {
-    match found == count {
-        true => Ok(()),
-        false => Err(cursor.wrong(format!(
+    if found == count {
+        Ok(())
+    } else {
+        Err(cursor.wrong(format!(
             "the blocks have {found} {what}, but {count} were declared"
-        ))),
+        )))
     }
 }

@@ -253,8 +253,9 @@ fn input(parameters: &str) -> Result<String, &'static str> {
         "*INCLUDE takes exactly one parameter, its file, as in \"*INCLUDE, INPUT=mesh.inp\"";
     let (name, value) = parameters.split_once('=').ok_or(RIGHT)?;
     let value = value.trim().trim_end_matches(',').trim().trim_matches('"');
-    match name.trim().eq_ignore_ascii_case("input") && !value.is_empty() {
-        true => Ok(value.to_owned()),
-        false => Err(RIGHT),
+    if name.trim().eq_ignore_ascii_case("input") && !value.is_empty() {
+        Ok(value.to_owned())
+    } else {
+        Err(RIGHT)
     }
 }

@@ -440,14 +440,15 @@ fn directions(first: &CardCell<'_>, words: &[CardCell<'_>]) -> Done<(u64, u64, f
 fn pressed(label: &CardCell<'_>, kind: &str, element: &Element) -> Done<usize> {
     let digits = kind.strip_prefix('P').unwrap_or_default();
     let numbered = !digits.is_empty() && digits.chars().all(|c| c.is_ascii_digit());
-    match numbered && element.kind.family != Family::Beam {
-        true => side_of(label, 'P', element),
-        false => bail!(
+    if numbered && element.kind.family != Family::Beam {
+        side_of(label, 'P', element)
+    } else {
+        bail!(
             label,
             "the load {} is not supported on element {}; supported are P1 to P4 on sides, GRAV, BX and BY",
             short(kind),
             element.label
-        ),
+        )
     }
 }
 

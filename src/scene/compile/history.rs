@@ -46,15 +46,12 @@ pub(super) fn history(history: &History) -> Result<(), Fault> {
     }
     let count = increments(path, |leg| history.on_leg(leg));
     if count > limits::INCREMENTS {
-        let message = match history.increments.is_empty() {
-            true => format!(
+        let message = if history.increments.is_empty() {
+            format!(
                 "the history would have {count:e} increments of {increment:?}; at most a million are allowed"
-            ),
-            false => {
-                format!(
-                    "the history would have {count:e} increments; at most a million are allowed"
-                )
-            }
+            )
+        } else {
+            format!("the history would have {count:e} increments; at most a million are allowed")
         };
         return Err(Fault::new(size, message));
     }

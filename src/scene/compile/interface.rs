@@ -94,9 +94,10 @@ pub(super) fn surfaces(spec: &Spec, names: &Names, length: f64) -> Result<Surfac
                     "an endless surface must be straight"
                 );
             }
-            let name = match several {
-                true => format!("{}.{number}", surface.id),
-                false => surface.id.clone(),
+            let name = if several {
+                format!("{}.{number}", surface.id)
+            } else {
+                surface.id.clone()
             };
             all.listed.push(k);
             all.made.push(Surface {

@@ -25,9 +25,10 @@ const TOUCHES: f64 = 1e-9;
 pub(super) fn check(here: &Path, group: &SlaveSpec) -> Result<(), Fault> {
     let positive = |at: Path, value: f64, what: &str| {
         limits::finite(&at, value, what)?;
-        match value > 0.0 {
-            true => Ok(()),
-            false => Err(fault!(at, "{what} is {value:?}; it must be positive")),
+        if value > 0.0 {
+            Ok(())
+        } else {
+            Err(fault!(at, "{what} is {value:?}; it must be positive"))
         }
     };
     if let Some(stiffness) = group.law.stiffness() {
@@ -145,9 +146,10 @@ pub(super) fn apply(
     for (slave, &pair) in slaves.iter_mut().zip(pairs) {
         let group = &spec.slaves[pair];
         slave.area = slave.area.or(group.area).or(areas[slave.node]);
-        let own = match group.law.is_tied() {
-            true => FrictionSpec::default(),
-            false => group.friction.unwrap_or(spec.friction),
+        let own = if group.law.is_tied() {
+            FrictionSpec::default()
+        } else {
+            group.friction.unwrap_or(spec.friction)
         };
         check_area(spec, names, group, &own, slave)?;
         slave.friction = own.of_node(slave.area);
@@ -262,12 +264,13 @@ fn bond(group: &SlaveSpec, area: f64) -> Bond {
         _ => 0.0,
     };
     let give = [normal, tangential];
-    match group.law.is_tied() {
-        true => Bond::Tied {
+    if group.law.is_tied() {
+        Bond::Tied {
             give,
             upright: false,
-        },
-        false => Bond::giving(give),
+        }
+    } else {
+        Bond::giving(give)
     }
 }
 

@@ -198,14 +198,15 @@ impl Layout {
                     limits::finite(&here.then("strain"), *strain, "the strain")?;
                     let body = volumes::expanding(bodies, on).at(here.then("on"))?;
                     let scale = factor(&here.then("scale"), scale)?;
-                    loads.pressures.push(match bodies[body].is_small() {
-                        true => Pressure {
+                    loads.pressures.push(if bodies[body].is_small() {
+                        Pressure {
                             faces: Vec::new(),
                             expands: Some(body),
                             value: *strain,
                             scale,
-                        },
-                        false => volumes::large_expansion(body, *strain, &scale),
+                        }
+                    } else {
+                        volumes::large_expansion(body, *strain, &scale)
                     });
                     continue;
                 }

@@ -57,9 +57,10 @@ impl DeckObjects<'_> {
                 Normal::Tied { .. } => ContactLaw::Tied,
             };
             let tied = law.is_tied();
-            let by = match pair.faces && law.stiffness().is_some() && self.is_of_solids(pair) {
-                true => SlavePoints::Surface,
-                false => SlavePoints::Node,
+            let by = if pair.faces && law.stiffness().is_some() && self.is_of_solids(pair) {
+                SlavePoints::Surface
+            } else {
+                SlavePoints::Node
             };
             if pair.faces && by.is_node() {
                 self.add_note(

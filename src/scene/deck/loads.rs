@@ -184,12 +184,13 @@ impl DeckObjects<'_> {
         let given = |k: usize| course.is_some_and(|course| !course.given[k].values.is_empty());
         for (k, step) in self.deck.steps.iter().enumerate() {
             #[cfg(mutants)]
-            let step = &match stickslip_core::mutants::is_active("op-new-ignored") {
-                true => Step {
+            let step = &if stickslip_core::mutants::is_active("op-new-ignored") {
+                Step {
                     new_motions: false,
                     ..step.clone()
-                },
-                false => step.clone(),
+                }
+            } else {
+                step.clone()
             };
             if step.new_motions && !given(k) && (k > 0 || from_model) {
                 bail!(
@@ -419,9 +420,10 @@ impl DeckObjects<'_> {
                     "the load acts on {count} of the {members} connected elements of {on}; it must act on all of them"
                 );
             }
-            let density = match is_weight {
-                false => 1.0,
-                true => self.density(body, place)?,
+            let density = if is_weight {
+                self.density(body, place)?
+            } else {
+                1.0
             };
             let part = |k: usize| if k == axis { value * density } else { 0.0 };
             self.add_load(

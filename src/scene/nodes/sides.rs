@@ -42,9 +42,10 @@ impl SideLine {
             let name = |n: Option<&usize>| n.map_or("", |&n| nodes[n].name.as_str());
             let (first, last) = (piece.first(), piece.last());
             let (start, end) = (first.and_then(|s| s.first()), last.and_then(|s| s.last()));
-            match start == end {
-                true => format!("a closed one at {}", name(start)),
-                false => format!("{} to {}", name(start), name(end)),
+            if start == end {
+                format!("a closed one at {}", name(start))
+            } else {
+                format!("{} to {}", name(start), name(end))
             }
         };
         let shown = first_of(self.pieces.iter().map(piece), MOST, ", ");

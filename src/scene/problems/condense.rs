@@ -165,9 +165,12 @@ fn by_column(matrix: &Matrix) -> Vec<Vec<(usize, f64)>> {
 
 /// The transpose; for a matrix that should be symmetric, the mean of both.
 fn turned(columns: Vec<Vec<f64>>, symmetric: bool) -> Vec<Vec<f64>> {
-    let entry = |i: usize, j: usize| match symmetric {
-        true => 0.5 * (columns[i][j] + columns[j][i]),
-        false => columns[j][i],
+    let entry = |i: usize, j: usize| {
+        if symmetric {
+            0.5 * (columns[i][j] + columns[j][i])
+        } else {
+            columns[j][i]
+        }
     };
     let size = 0..columns.len();
     size.clone()

@@ -319,12 +319,13 @@ fn points<'s>(spec: &'s Stored, numbers: &Numbers) -> Result<Vec<Point<'s>>, Fau
             });
         }
     }
-    match points.is_empty() {
-        true => Err(fault!(
+    if points.is_empty() {
+        Err(fault!(
             at!["contacts"],
             "no contacts; name at least one node that may touch"
-        )),
-        false => Ok(points),
+        ))
+    } else {
+        Ok(points)
     }
 }
 

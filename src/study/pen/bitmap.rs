@@ -121,9 +121,10 @@ impl Bitmap {
             };
             // All polygons get the same orientation, so that overlaps do not cancel.
             for k in 0..corners.len() {
-                match turn(corners) > 0.0 {
-                    true => raster.draw_line(near(k), near(k + 1)),
-                    false => raster.draw_line(near(k + 1), near(k)),
+                if turn(corners) > 0.0 {
+                    raster.draw_line(near(k), near(k + 1))
+                } else {
+                    raster.draw_line(near(k + 1), near(k))
                 }
             }
         }

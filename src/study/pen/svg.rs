@@ -24,9 +24,10 @@ pub fn svg(shapes: &[Shape], (width, height): (f64, f64)) -> Result<String, Plot
                     Anchor::Middle => "middle",
                     Anchor::Right => "end",
                 };
-                let turned = match line.upright {
-                    true => format!(" transform=\"rotate(270, {x}, {y})\""),
-                    false => String::new(),
+                let turned = if line.upright {
+                    format!(" transform=\"rotate(270, {x}, {y})\"")
+                } else {
+                    String::new()
                 };
                 let family = match line.face {
                     Face::Sans => "sans-serif",

@@ -128,9 +128,10 @@ fn chart(
 fn axes(buffer: &mut Buffer, frame: ChartFrame, x: [f64; 2], y: [f64; 2], theme: &Theme) {
     let label = |value: f64| {
         let whole = sig6(value);
-        match whole.len() < usize::from(LABELS) {
-            true => whole,
-            false => sig2(value),
+        if whole.len() < usize::from(LABELS) {
+            whole
+        } else {
+            sig2(value)
         }
     };
     frame.axis(buffer, theme.faint);

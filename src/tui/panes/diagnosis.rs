@@ -110,9 +110,10 @@ const HEADINGS: usize = 7;
 fn words(page: &DiagnosisPage, width: usize, app: &App) -> (paint::Lines, usize) {
     let theme = &app.theme;
     let mut lines = Vec::new();
-    let strong = match page.found.fails {
-        true => theme.strong,
-        false => theme.text,
+    let strong = if page.found.fails {
+        theme.strong
+    } else {
+        theme.text
     };
     hang(&mut lines, "What", &page.what, (width, strong, ""), app);
     for (k, text) in page.why.iter().enumerate() {
@@ -265,9 +266,10 @@ fn answers(page: &DiagnosisPage, width: usize, app: &App, view: &View) -> paint:
     let left = problem.nodes.len() - listed.len();
     if left > 0 {
         let all = (0..problem.nodes.len()).filter(|&place| differs(census, place));
-        let text = match all.count() > listed.len() {
-            true => format!(" and {left} more"),
-            false => format!(" and {left} more, the same in all states"),
+        let text = if all.count() > listed.len() {
+            format!(" and {left} more")
+        } else {
+            format!(" and {left} more, the same in all states")
         };
         lines.push(Line::styled(text, theme.faint));
     }
@@ -278,12 +280,13 @@ fn answers(page: &DiagnosisPage, width: usize, app: &App, view: &View) -> paint:
     } else {
         String::new()
     };
-    let text = match selects {
-        true => format!(
+    let text = if selects {
+        format!(
             "{more} Up and Down select, Enter starts from it (:start-from {})",
             at + 1
-        ),
-        false => format!("{more} :start-from N starts from state N"),
+        )
+    } else {
+        format!("{more} :start-from N starts from state N")
     };
     lines.push(Line::styled(format!(" {}", text.trim_start()), theme.faint));
     lines

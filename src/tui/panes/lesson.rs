@@ -49,9 +49,10 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, _: &View) {
     let seen = if same { app.learning.reading.seen } else { 0 };
     lines = lines.into_iter().skip(top).take(room).collect();
     let more = all > shown.end.max(seen);
-    match more {
-        true => lines.push(Line::styled(" ▼ Space: more", app.theme.key)),
-        false => lines.extend(todo(tutor, width, &app.theme)),
+    if more {
+        lines.push(Line::styled(" ▼ Space: more", app.theme.key))
+    } else {
+        lines.extend(todo(tutor, width, &app.theme))
     }
     paint::lines(buffer, inner, &lines);
     if shown.len() < all {

@@ -140,14 +140,15 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
             longest.clamp(4, 20),
         )
     };
-    let columns = match view
+    let columns = if view
         .model
         .contacts
         .iter()
         .any(|contact| contact.area.is_some())
     {
-        true => columns.with_pressures(inner.width as usize),
-        false => columns,
+        columns.with_pressures(inner.width as usize)
+    } else {
+        columns
     };
     let rows = (inner.height as usize).saturating_sub(1);
     let round_off = view.round_off();
@@ -332,9 +333,12 @@ fn modes(
     } else {
         theme::letter
     };
-    let style = |mode| match changed {
-        true => app.theme.mode(mode).add_modifier(Modifier::BOLD),
-        false => app.theme.mode(mode),
+    let style = |mode| {
+        if changed {
+            app.theme.mode(mode).add_modifier(Modifier::BOLD)
+        } else {
+            app.theme.mode(mode)
+        }
     };
     let (before, next) = (view.mode_before(slave), view.mode(slave));
     let arrow = if columns.words { " → " } else { "→" };
@@ -421,9 +425,10 @@ fn number_style(column: usize, record: &ContactRecord, app: &App) -> Style {
         _ => return app.theme.text,
     };
     let mut tests = record.decision.tests.iter().flatten();
-    match tests.any(|test| test.tested == tested && record.is_tie(test)) {
-        true => app.theme.warning,
-        false => app.theme.text,
+    if tests.any(|test| test.tested == tested && record.is_tie(test)) {
+        app.theme.warning
+    } else {
+        app.theme.text
     }
 }
 

@@ -43,9 +43,12 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         return;
     };
     let words = |value: f64| short(value, view);
-    let percent = |part: f64| match part.is_nan() {
-        true => number::UNREPORTED.to_owned(),
-        false => format!("{} %", number::shortest(100.0 * part)),
+    let percent = |part: f64| {
+        if part.is_nan() {
+            number::UNREPORTED.to_owned()
+        } else {
+            format!("{} %", number::shortest(100.0 * part))
+        }
     };
     let (main, (other, value), limit) = match &view.model.finished {
         None => (
@@ -107,9 +110,10 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
 
 /// A number of a caption; a dash if an attached solver does not report it.
 fn short(value: f64, view: &View) -> String {
-    match view.is_unreported(value) {
-        true => number::UNREPORTED.into(),
-        false => number::sig4(value),
+    if view.is_unreported(value) {
+        number::UNREPORTED.into()
+    } else {
+        number::sig4(value)
     }
 }
 
@@ -138,9 +142,10 @@ fn point((number, norms): &(u32, Norms), view: &View) -> Point {
 fn judged(view: &View, theme: &Theme) -> Option<Line<'static>> {
     let verdict = view.frame().state.start.verdict.as_ref()?;
     let worst = verdict.largest()?;
-    let (sign, style) = match worst.is_broken() {
-        true => ("✗", theme.warning),
-        false => ("✓", theme.good),
+    let (sign, style) = if worst.is_broken() {
+        ("✗", theme.warning)
+    } else {
+        ("✓", theme.good)
     };
     let node = worst.slave.map(|slave| names::slave(view.model, slave));
     let place = node.map_or(String::new(), |node| format!(" at {node}"));

@@ -192,9 +192,10 @@ fn draw_curve(canvas: &mut Canvas, window: &Window, nodes: &[Point], style: Styl
     let dots = |points: &[Point]| -> Vec<Dot> { points.iter().map(|&p| window.dot(p)).collect() };
     let straight = dots(nodes);
     let is_close = |ends: &[Dot]| distance(ends[0], ends[1]) < CLOSE;
-    match straight.windows(2).all(is_close) {
-        true => canvas.polyline(&straight, style),
-        false => canvas.polyline(&dots(&curve(nodes)), style),
+    if straight.windows(2).all(is_close) {
+        canvas.polyline(&straight, style)
+    } else {
+        canvas.polyline(&dots(&curve(nodes)), style)
     }
 }
 
@@ -412,10 +413,7 @@ fn drawn(
     let is_covered = forces
         .iter()
         .any(|[tail, tip]| *tail == at && arrow.is_under([tip[0] - tail[0], tail[1] - tip[1]]));
-    let line = match is_covered {
-        true => beside(line),
-        false => line,
-    };
+    let line = if is_covered { beside(line) } else { line };
     (line, app.theme.good, heads)
 }
 
@@ -448,10 +446,10 @@ fn supports(
         };
         (node, glyph)
     });
-    let turns = found.turns.into_iter().map(|(node, _, left)| match left {
-        true => (node, "↺"),
-        false => (node, "↻"),
-    });
+    let turns = found
+        .turns
+        .into_iter()
+        .map(|(node, _, left)| if left { (node, "↺") } else { (node, "↻") });
     for (node, glyph) in supports.chain(turns) {
         if let Some(at) = canvas.cell(window.dot(window.place(view, node))) {
             paint::label(buffer, at, glyph, app.theme.good, &app.theme);
@@ -521,9 +519,10 @@ fn slaves(buffer: &mut Buffer, canvas: &Canvas, window: &Window, app: &App, view
         // The mode in which the drawn forces were found.
         let mode = view.mode_before(slave);
         let style = theme.mode(mode).add_modifier(Modifier::BOLD);
-        let style = match slave == selected {
-            true => style.add_modifier(Modifier::REVERSED),
-            false => style,
+        let style = if slave == selected {
+            style.add_modifier(Modifier::REVERSED)
+        } else {
+            style
         };
         paint::label(buffer, (x, y), theme::letter(mode), style, theme);
         let right = (x + 1, y);
@@ -559,12 +558,13 @@ fn name(buffer: &mut Buffer, canvas: &Canvas, (x, y): (u16, u16), name: &str, th
 /// Caption of the worst point: its mark, its element, and its stretch or that it is inverted.
 fn worst_words(model: &Model, point: &PointDeformation) -> String {
     let element = strain::element(model, point);
-    match point.determinant > 0.0 {
-        true => format!(
+    if point.determinant > 0.0 {
+        format!(
             " {WORST} {element}: stretch {}  ",
             number::sig4(point.stretch)
-        ),
-        false => format!(" {WORST} {element}: inverted  "),
+        )
+    } else {
+        format!(" {WORST} {element}: inverted  ")
     }
 }
 

@@ -107,9 +107,10 @@ fn scene<'a>(app: &App, view: &View<'a>, width: usize) -> Line<'a> {
     let name = paint::cut(&name, width.saturating_sub(PROGRAM.width()));
     let room = width.saturating_sub(PROGRAM.width() + name.width());
     // A deck has no title, and is called by its name.
-    let title = match view.model.title == name {
-        true => String::new(),
-        false => format!("  {}", view.model.title),
+    let title = if view.model.title == name {
+        String::new()
+    } else {
+        format!("  {}", view.model.title)
     };
     Line::from(vec![
         Span::styled(PROGRAM, app.theme.faint),

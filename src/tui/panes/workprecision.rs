@@ -230,16 +230,13 @@ fn details(page: &ChartPage, theme: &Theme, width: usize, has_legend: bool) -> p
     ];
     let lines = lines.map(|(text, style)| Line::styled(paint::cut(&text, width), style));
     // Without a column for the series, they replace the source.
-    let last = match has_legend {
-        true => {
-            let about = format!(" {}", about.map_or("", String::as_str));
-            vec![Line::styled(paint::cut(&about, width), theme.faint)]
-        }
-        false => {
-            let names = chart.series.iter().enumerate();
-            let names = names.map(|(k, name)| format!("{} {name}", letter(k, false)));
-            paint::wrapped(&names.collect::<Vec<_>>().join("  "), width, theme.faint)
-        }
+    let last = if has_legend {
+        let about = format!(" {}", about.map_or("", String::as_str));
+        vec![Line::styled(paint::cut(&about, width), theme.faint)]
+    } else {
+        let names = chart.series.iter().enumerate();
+        let names = names.map(|(k, name)| format!("{} {name}", letter(k, false)));
+        paint::wrapped(&names.collect::<Vec<_>>().join("  "), width, theme.faint)
     };
     lines.into_iter().chain(last).collect()
 }

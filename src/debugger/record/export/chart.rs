@@ -76,10 +76,7 @@ fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
     let (low, high) = finite.fold((0.0_f64, 0.0_f64), |(low, high), x| {
         (low.min(x), high.max(x))
     });
-    match high > low {
-        true => [low, high],
-        false => [0.0, 1.0],
-    }
+    if high > low { [low, high] } else { [0.0, 1.0] }
 }
 
 /// The load over the requested monitor, or over the first that moves.
@@ -195,9 +192,10 @@ pub(super) fn cone(sheet: &mut Sheet, shown: &ExportState, high: f64) -> Result<
     if has_web {
         let margin = 0.06 * (top - low);
         let span = [low - margin, top + margin];
-        let less = match origin == 0.0 {
-            true => String::new(),
-            false => format!(" less {}", sig4(origin)),
+        let less = if origin == 0.0 {
+            String::new()
+        } else {
+            format!(" less {}", sig4(origin))
         };
         let (used, found) = (format!("T_max used{less}"), format!("T_max found{less}"));
         let ranges = ((used.as_str(), span), (found.as_str(), span));

@@ -78,9 +78,10 @@ impl ShapeDrawing<'_> {
         });
         let [x, y] = arrow.along;
         let length = x.hypot(y).max(1e-300).copysign(-x);
-        match is_covered {
-            true => (ASIDE * y / length, ASIDE * x / length),
-            false => (0.0, 0.0),
+        if is_covered {
+            (ASIDE * y / length, ASIDE * x / length)
+        } else {
+            (0.0, 0.0)
         }
     }
 }

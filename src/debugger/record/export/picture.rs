@@ -160,9 +160,10 @@ fn caption(shown: &ExportState) -> String {
         ended => format!("; {ended}"),
     };
     let text = format!("{at}, load {load}: {what}{more}");
-    match text.ends_with('…') {
-        true => text,
-        false => text + ".",
+    if text.ends_with('…') {
+        text
+    } else {
+        text + "."
     }
 }
 
@@ -259,9 +260,10 @@ impl ShapeDrawing<'_> {
 
     fn stroke(&mut self, points: &[Point], pen: &Pen) {
         for chain in self.window.inside(&curve(points)) {
-            match pen.dashed {
-                true => self.sheet.dashed(&chain, pen.width, pen.colour),
-                false => self.sheet.line(&chain, pen.width, pen.colour),
+            if pen.dashed {
+                self.sheet.dashed(&chain, pen.width, pen.colour)
+            } else {
+                self.sheet.line(&chain, pen.width, pen.colour)
             }
         }
     }
@@ -477,9 +479,10 @@ impl ShapeDrawing<'_> {
         self.sheet
             .text((x + 10.0, y), "outward side", SMALL, BLACK, Anchor::Left);
         let moved = moved(self.shown);
-        let scale = match magnified == 1.0 {
-            true => "to scale".to_owned(),
-            false => format!("magnified ×{}", shortest(magnified)),
+        let scale = if magnified == 1.0 {
+            "to scale".to_owned()
+        } else {
+            format!("magnified ×{}", shortest(magnified))
         };
         let number = numbered.map_or(String::new(), |row| {
             format!(" ({row}): the node in row {row} of the table.")

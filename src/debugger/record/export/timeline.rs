@@ -193,19 +193,19 @@ pub(super) fn draw(
         return Ok(());
     }
     let all = strips.iter().filter(|s| s.kind.is_solved()).count();
-    let head = match all > columns.len() {
-        true => {
-            let (from, to) = (shortest(first.load_factor), shortest(end.load_factor));
-            let loads = match from == to {
-                true => format!("load {to}"),
-                false => format!("loads {from} to {to}"),
-            };
-            format!(
-                "Modes by minor iteration, the last {}, {loads}",
-                columns.len()
-            )
-        }
-        false => "Modes by minor iteration".to_owned(),
+    let head = if all > columns.len() {
+        let (from, to) = (shortest(first.load_factor), shortest(end.load_factor));
+        let loads = if from == to {
+            format!("load {to}")
+        } else {
+            format!("loads {from} to {to}")
+        };
+        format!(
+            "Modes by minor iteration, the last {}, {loads}",
+            columns.len()
+        )
+    } else {
+        "Modes by minor iteration".to_owned()
     };
     sheet.paragraph(&[head], LABEL, BLACK)?;
     let mut before = None;

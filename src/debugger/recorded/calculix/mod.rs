@@ -255,9 +255,12 @@ impl RecordedRun {
                 major: 1,
                 minor: this.number,
             },
-            load_factor: row.map_or(f64::NAN, |row| match row.converged {
-                true => row.total_time,
-                false => row.total_time + row.size,
+            load_factor: row.map_or(f64::NAN, |row| {
+                if row.converged {
+                    row.total_time
+                } else {
+                    row.total_time + row.size
+                }
             }),
             arc: None,
             drag: 0.0,

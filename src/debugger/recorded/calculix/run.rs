@@ -252,8 +252,9 @@ fn elements(closed: &[ClosedContact]) -> u32 {
 /// A face by its corners; a triangle has three.
 pub fn face(corners: &[u32; 4]) -> String {
     let [a, b, c, d] = corners;
-    match c == d {
-        true => format!("{a} {b} {c}"),
-        false => format!("{a} {b} {c} {d}"),
+    if c == d {
+        format!("{a} {b} {c}")
+    } else {
+        format!("{a} {b} {c} {d}")
     }
 }

@@ -358,9 +358,10 @@ pub fn constrained_slaves(shape: &DeckShape) -> Vec<RunFinding> {
                     "leave these nodes out of *BOUNDARY (line {})",
                     first.place.line
                 ),
-                lines: match rest.is_empty() {
-                    true => "** supports no other node".into(),
-                    false => rest.join("\n"),
+                lines: if rest.is_empty() {
+                    "** supports no other node".into()
+                } else {
+                    rest.join("\n")
                 },
             });
         }
@@ -387,12 +388,13 @@ pub fn constrained_slaves(shape: &DeckShape) -> Vec<RunFinding> {
                     pair.name,
                     names(&nodes)
                 ),
-                cure: match count == own.len() {
-                    true => format!("leave the pair out (line {})", deck.pairs[k].place.line),
-                    false => format!(
+                cure: if count == own.len() {
+                    format!("leave the pair out (line {})", deck.pairs[k].place.line)
+                } else {
+                    format!(
                         "leave these nodes out of the slave surface {} (line {})",
                         surface.name, surface.place.line
-                    ),
+                    )
                 },
                 lines: remaining(&own, &nodes, shape, surface.name.as_str()),
             });
@@ -419,9 +421,10 @@ fn remaining(
     let rest: Vec<String> = rest
         .map(|&node| format!("{},", shape.deck.nodes[node].label))
         .collect();
-    match rest.is_empty() {
-        true => format!("** {name} is in no pair"),
-        false => format!("*SURFACE, NAME={name}, TYPE=NODE\n{}", rest.join("\n")),
+    if rest.is_empty() {
+        format!("** {name} is in no pair")
+    } else {
+        format!("*SURFACE, NAME={name}, TYPE=NODE\n{}", rest.join("\n"))
     }
 }
 

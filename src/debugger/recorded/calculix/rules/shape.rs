@@ -602,9 +602,10 @@ impl<'d> DeckShape<'d> {
     pub fn factor(&self, step: &Step, amplitude: Option<usize>, time: f64) -> f64 {
         let Some(amplitude) = amplitude else {
             let ramp = time / step.time.period.max(f64::MIN_POSITIVE);
-            return match step.at_once {
-                true => f64::from(time > 0.0),
-                false => ramp.min(1.0),
+            return if step.at_once {
+                f64::from(time > 0.0)
+            } else {
+                ramp.min(1.0)
             };
         };
         let points = &self.deck.amplitudes[amplitude].points;

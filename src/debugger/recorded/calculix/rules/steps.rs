@@ -145,16 +145,17 @@ pub fn small_sliding(shape: &DeckShape) -> Vec<RunFinding> {
         if along <= SLIDING * pair.sizes[0] || (step.nlgeom && !card.small_sliding) {
             continue;
         }
-        let (why, cure, lines) = match step.nlgeom {
-            true => (
+        let (why, cure, lines) = if step.nlgeom {
+            (
                 "the pair has SMALL SLIDING, which keeps the first master face",
                 format!(
                     "leave SMALL SLIDING out (*CONTACT PAIR before line {})",
                     card.place.line
                 ),
                 pair_card(shape, pair, ""),
-            ),
-            false => (
+            )
+        } else {
+            (
                 "the step has no NLGEOM",
                 format!(
                     "large displacements in all steps (line {})",
@@ -163,7 +164,7 @@ pub fn small_sliding(shape: &DeckShape) -> Vec<RunFinding> {
                 step.increments.map_or("*STEP, NLGEOM".into(), |most| {
                     format!("*STEP, NLGEOM, INC={most}")
                 }),
-            ),
+            )
         };
         found.push(RunFinding {
             rule: "small displacements",
