@@ -1,7 +1,8 @@
 //! Bodies that nothing connects with the others: no contact, no tie, no common node.
 
 use super::motion::{GroupMotion, words};
-use super::shape::{DeckShape, extent};
+use super::shape::DeckShape;
+use super::sorted_points::extent;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use stickslip_core::RunFinding;
 use stickslip_exchange::mesh::CellKind;

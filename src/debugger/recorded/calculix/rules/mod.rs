@@ -13,6 +13,7 @@ mod pairs;
 mod record;
 mod resting;
 pub mod shape;
+mod sorted_points;
 mod steps;
 mod supports;
 

@@ -1,7 +1,8 @@
 //! Rules on pairs and ties as the deck defines them: faces, gaps, laws, and slave nodes.
 
 use super::numbers::{plain, rounded, rounded_up};
-use super::shape::{DeckShape, PairShape, SlaveGap, SortedPoints, SurfaceFace, Vector};
+use super::shape::{DeckShape, PairShape, SlaveGap, SurfaceFace, Vector};
+use super::sorted_points::SortedPoints;
 use super::supports::is_free;
 use std::collections::{BTreeMap, BTreeSet};
 use stickslip_core::RunFinding;
