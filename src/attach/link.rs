@@ -146,8 +146,10 @@ impl Link {
         let input = link.input.take().map(Input::prepared).transpose();
         link.input = input.map_err(failed)?;
         let reader = link.input.as_ref().map(Input::reader).transpose();
-        let from_socket = reader.map_err(failed)?.flatten();
-        let messages = from_socket.or_else(|| streams[0].take());
+        let messages = reader
+            .map_err(failed)?
+            .flatten()
+            .or_else(|| streams[0].take());
         if let Some(stream) = messages {
             thread::spawn(move || read(stream, &lines));
         }

@@ -244,10 +244,12 @@ fn parameters(scene: &Scene) -> Vec<ParameterMessage> {
     let settings = paths::list(&scene.spec).into_iter();
     let settings = settings.filter(|listed| listed.path.starts_with("settings."));
     all.extend(settings.map(|listed| {
-        let choices = words.iter().find(|(path, _)| *path == listed.path);
-        let choices: Vec<String> = choices.map_or_else(Vec::new, |(_, words)| {
-            words.iter().map(|word| (*word).to_owned()).collect()
-        });
+        let choices: Vec<String> = words
+            .iter()
+            .find(|(path, _)| *path == listed.path)
+            .map_or_else(Vec::new, |(_, words)| {
+                words.iter().map(|word| (*word).to_owned()).collect()
+            });
         let (kind, value) = match listed.value.parse::<f64>() {
             _ if !choices.is_empty() => (ParameterKind::Choice, Value::from(listed.value)),
             Ok(_) if listed.kind.contains("whole") => {

@@ -49,8 +49,11 @@ fn features() -> String {
         ("fclib", cfg!(feature = "fclib")),
     ];
     let with = |wanted: bool| {
-        let names = all.iter().filter(|(_, has)| *has == wanted);
-        names.map(|(name, _)| *name).collect::<Vec<_>>().join(", ")
+        all.iter()
+            .filter(|(_, has)| *has == wanted)
+            .map(|(name, _)| *name)
+            .collect::<Vec<_>>()
+            .join(", ")
     };
     match (with(true), with(false)) {
         (all, none) if none.is_empty() => all,
@@ -94,8 +97,9 @@ fn kernel_and_libc() -> String {
         .arg("GNU_LIBC_VERSION")
         .output()
         .ok();
-    let libc = asked.filter(|asked| asked.status.success());
-    let libc = libc.map(|asked| String::from_utf8_lossy(&asked.stdout).trim().to_owned());
+    let libc = asked
+        .filter(|asked| asked.status.success())
+        .map(|asked| String::from_utf8_lossy(&asked.stdout).trim().to_owned());
     let libc = libc.filter(|libc| !libc.is_empty());
     format!(
         "{}, {}",
@@ -147,11 +151,13 @@ fn terminal() -> String {
 }
 
 fn variables(names: &[&str]) -> String {
-    let words = names.iter().filter_map(|name| {
-        let value = env::var_os(name)?;
-        Some(format!("{name}={}", value.to_string_lossy()))
-    });
-    let words: Vec<String> = words.collect();
+    let words: Vec<String> = names
+        .iter()
+        .filter_map(|name| {
+            let value = env::var_os(name)?;
+            Some(format!("{name}={}", value.to_string_lossy()))
+        })
+        .collect();
     if words.is_empty() {
         format!("none of these is set: {}", names.join(", "))
     } else {

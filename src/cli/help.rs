@@ -97,8 +97,9 @@ pub fn commands(mut program: clap::Command) -> String {
 /// An argument as it is typed.
 fn written(argument: &clap::Arg) -> String {
     let takes = argument.get_action().takes_values();
-    let values = argument.get_value_names().unwrap_or_default();
-    let values: Vec<&str> = values
+    let values: Vec<&str> = argument
+        .get_value_names()
+        .unwrap_or_default()
         .iter()
         .filter(|_| takes)
         .map(|name| name.as_str())

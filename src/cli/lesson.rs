@@ -132,8 +132,11 @@ fn list() -> Result<String, Error> {
             .of(&lesson.name)
             .map_or(String::new(), |r| r.words())
     };
-    let names = lessons.iter().map(|lesson| lesson.name.width());
-    let width = names.max().unwrap_or(0);
+    let width = lessons
+        .iter()
+        .map(|lesson| lesson.name.width())
+        .max()
+        .unwrap_or(0);
     let column = lessons.iter().map(|lesson| done(lesson).width()).max();
     let line = |(index, lesson): (usize, &Lesson)| {
         let mut line = format!("{:>2}  {}  ", index + 1, shown::padded(&lesson.name, width));
@@ -187,13 +190,15 @@ fn sheet(lesson: Lesson) -> Result<String, Error> {
 /// A text after an empty line, with its equations on lines of their own.
 fn printed(mark: &str, text: &str) -> String {
     let indent = " ".repeat(mark.width());
-    let lines = paragraphs(text).into_iter().enumerate();
-    let lines = lines.map(|(k, paragraph)| match paragraph {
-        Paragraph::Equation(equation) => indented(&format!("{indent}    "), &equation),
-        Paragraph::Text(text) if k == 0 => indented(mark, &text),
-        Paragraph::Text(text) => indented(&indent, &text),
-        _ => String::new(),
-    });
+    let lines = paragraphs(text)
+        .into_iter()
+        .enumerate()
+        .map(|(k, paragraph)| match paragraph {
+            Paragraph::Equation(equation) => indented(&format!("{indent}    "), &equation),
+            Paragraph::Text(text) if k == 0 => indented(mark, &text),
+            Paragraph::Text(text) => indented(&indent, &text),
+            _ => String::new(),
+        });
     "\n".to_owned() + &lines.collect::<String>()
 }
 

@@ -58,10 +58,14 @@ fn find(name: &str, chart: bool) -> Result<&'static str, String> {
     };
     found.ok_or_else(|| {
         let scenes = builtin::list().iter().map(|scene| scene.name);
-        let others = studies::list().iter().map(|study| study.name);
-        let others = others.chain([benchmarks::BUILTIN]);
-        let lessons = teach::list().iter().chain(teach::lesson::sheets());
-        let lessons = lessons.map(|lesson| lesson.name);
+        let others = studies::list()
+            .iter()
+            .map(|study| study.name)
+            .chain([benchmarks::BUILTIN]);
+        let lessons = teach::list()
+            .iter()
+            .chain(teach::lesson::sheets())
+            .map(|lesson| lesson.name);
         let (what, near) = if chart {
             ("chart", did_you_mean(name, chart_file::names()))
         } else {

@@ -222,8 +222,7 @@ fn blocks(
         column_of.push(words.count_up_to(across - 1, "a block column")?);
     }
     for (row, blocks) in begins.windows(2).enumerate() {
-        let own = column_of.iter().enumerate().take(blocks[1]);
-        for (number, &across) in own.skip(blocks[0]) {
+        for (number, &across) in column_of.iter().enumerate().take(blocks[1]).skip(blocks[0]) {
             words.exactly(number, "the number of a block")?;
             for column in range(&column_ends, across) {
                 for line in range(&row_ends, row) {
@@ -334,8 +333,11 @@ fn sparse(
         }
     }
     if triplets && origin == HALF {
-        let other = entries.iter().filter(|(i, j, _)| i != j);
-        let other: Entries = other.map(|&(i, j, v)| (j, i, v)).collect();
+        let other: Entries = entries
+            .iter()
+            .filter(|(i, j, _)| i != j)
+            .map(|&(i, j, v)| (j, i, v))
+            .collect();
         entries.extend(other);
     }
     Ok(entries)
@@ -367,8 +369,9 @@ pub fn write(problem: &Local, storage: Storage) -> String {
 fn write_blocks(text: &mut String, rows: &[Vec<f64>], dimension: usize) {
     let contacts = rows.len() / dimension;
     let entries = |i: usize, j: usize| -> Vec<f64> {
-        let at = (0..dimension).flat_map(|b| (0..dimension).map(move |a| (a, b)));
-        at.map(|(a, b)| rows[dimension * i + a][dimension * j + b])
+        (0..dimension)
+            .flat_map(|b| (0..dimension).map(move |a| (a, b)))
+            .map(|(a, b)| rows[dimension * i + a][dimension * j + b])
             .collect()
     };
     let (mut begins, mut columns, mut blocks) = (vec![0], Vec::new(), String::new());

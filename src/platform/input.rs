@@ -141,8 +141,9 @@ pub fn open(path: &Path, options: &mut OpenOptions) -> Result<File, Unreadable> 
         Err(error) if error.kind() == io::ErrorKind::NotFound => {}
         Err(error) => return Err(error.into()),
     }
-    let file = system::set_nonblocking(options).open(path);
-    let file = file.map_err(|error| failed(path, error))?;
+    let file = system::set_nonblocking(options)
+        .open(path)
+        .map_err(|error| failed(path, error))?;
     regular(&file.metadata()?)?;
     Ok(file)
 }

@@ -302,8 +302,9 @@ impl Scene {
             overrides,
         };
         let start = Start::new(text);
-        let mut readers = READERS.iter();
-        let read = readers.find_map(|reader| reader.read.filter(|_| (reader.recognise)(&start)));
+        let read = READERS
+            .iter()
+            .find_map(|reader| reader.read.filter(|_| (reader.recognise)(&start)));
         match read {
             Some(read) => read(&source),
             None => source
@@ -370,8 +371,10 @@ impl Source<'_> {
         let name = self.name;
         let read = deck::read(name, self.text)?;
         let place = |overrides: &[Override], fault: Fault| {
-            let own = read.origin.of(&fault.path);
-            let own = own.map(|(file, at)| (file.to_owned(), at));
+            let own = read
+                .origin
+                .of(&fault.path)
+                .map(|(file, at)| (file.to_owned(), at));
             match (placed(name, "", overrides, fault), own) {
                 (fault, Some((file, at))) if fault.set.is_none() => SceneError {
                     file,

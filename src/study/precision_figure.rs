@@ -58,12 +58,16 @@ impl ErrorPanel<'_> {
     fn new(chart: &Precision, top: f64, is_force: bool, error_on_x: bool) -> ErrorPanel<'_> {
         let of = |p: &Point| if is_force { p.force_error } else { p.error };
         let errors = chart.points.iter().filter_map(of);
-        let levels = chart.target.filter(|_| !is_force);
-        let levels = levels
+        let levels = chart
+            .target
+            .filter(|_| !is_force)
             .into_iter()
             .chain(chart.uncertainty[usize::from(is_force)]);
-        let spread = chart.points.iter().filter_map(|p| p.spread);
-        let spread = spread.filter(|_| chart.cost == Cost::Time);
+        let spread = chart
+            .points
+            .iter()
+            .filter_map(|p| p.spread)
+            .filter(|_| chart.cost == Cost::Time);
         let costs = chart.points.iter().map(|p| chart.cost.of(p));
         let rail = if error_on_x { 0.0 } else { RAIL };
         ErrorPanel {
@@ -142,8 +146,14 @@ impl ErrorPanel<'_> {
             let words = format!("error bar of the reference: {}", sig2(bar));
             self.level(sheet, bar, &words, &mut taken)?;
         }
-        let errors = self.chart.points.iter().filter_map(|p| self.error_of(p));
-        if errors.fold(f64::INFINITY, f64::min) < ROUND_OFF {
+        if self
+            .chart
+            .points
+            .iter()
+            .filter_map(|p| self.error_of(p))
+            .fold(f64::INFINITY, f64::min)
+            < ROUND_OFF
+        {
             let least = written(short(ROUND_OFF));
             let words = format!("round-off: below {least}, treated as equal");
             self.level(sheet, ROUND_OFF, &words, &mut taken)?;
@@ -197,8 +207,9 @@ impl ErrorPanel<'_> {
             (false, some) => format!("error of {} (relative to the largest)", some.join(", ")),
         };
         let numbers = |axis: LogAxis, most| {
-            let ticks = axis.ticks(most).into_iter();
-            ticks.map(move |value| (axis.part(value), written(value)))
+            axis.ticks(most)
+                .into_iter()
+                .map(move |value| (axis.part(value), written(value)))
         };
         let cost = chart.cost.axis();
         if self.error_on_x {
@@ -266,9 +277,13 @@ impl ErrorPanel<'_> {
     fn triangle(&self, sheet: &mut Sheet, taken: &mut OccupiedArea) -> Option<String> {
         let chart = self.chart;
         let mut steps = (0..chart.series.len()).filter_map(|k| {
-            let own = chart.points.iter().filter(|p| p.series == k);
-            let own = own.filter_map(|p| Some((chart.cost.of(p), self.error_of(p)?)));
-            let mut own: Vec<(f64, f64)> = own.filter(|p| p.0 > 0.0 && p.1 > ROUND_OFF).collect();
+            let mut own: Vec<(f64, f64)> = chart
+                .points
+                .iter()
+                .filter(|p| p.series == k)
+                .filter_map(|p| Some((chart.cost.of(p), self.error_of(p)?)))
+                .filter(|p| p.0 > 0.0 && p.1 > ROUND_OFF)
+                .collect();
             own.sort_by(|a, b| a.0.total_cmp(&b.0));
             let falls =
                 |pair: &[(f64, f64)]| pair[1].0 > pair[0].0 && (1.0 + TIE) * pair[1].1 < pair[0].1;

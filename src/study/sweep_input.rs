@@ -60,8 +60,12 @@ impl Input {
                 theirs.what, self.what
             ));
         }
-        let pairs = self.parts.iter().zip(&theirs.parts);
-        let other = pairs.into_iter().find(|(ours, theirs)| ours != theirs);
+        let other = self
+            .parts
+            .iter()
+            .zip(&theirs.parts)
+            .into_iter()
+            .find(|(ours, theirs)| ours != theirs);
         let cut = |text: &str| shown::cut(text, SHOWN).to_string();
         if let Some(((name, ours), (their_name, theirs))) = other {
             return Some(if name == their_name {

@@ -77,8 +77,7 @@ impl Outcome for JudgedProblem {
     /// A violation may be infinite without an end, but is within the tolerance if right.
     fn is_sound(&self) -> bool {
         let right = |trial: &Trial| trial.verdict == RunVerdict::Right;
-        let mut trials = self.trials.iter();
-        trials.all(|trial| {
+        self.trials.iter().all(|trial| {
             if right(trial) {
                 trial.violation <= TOLERANCE
             } else {

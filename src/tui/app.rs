@@ -380,8 +380,11 @@ impl App {
 
     /// Names of the built-in scenes.
     pub(super) fn scenes(&self) -> Vec<String> {
-        let own = self.offers.iter().filter(|offer| offer.is_scene());
-        own.map(|offer| offer.name.clone()).collect()
+        self.offers
+            .iter()
+            .filter(|offer| offer.is_scene())
+            .map(|offer| offer.name.clone())
+            .collect()
     }
 
     /// Handles Ctrl-C: closes overlays and stops a run, but never quits the program.

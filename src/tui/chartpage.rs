@@ -93,8 +93,10 @@ impl ChartPage {
 
     /// Whether any run of the shown chart has an error of the contact forces.
     fn has_forces(&self) -> bool {
-        let mut points = self.shown().points.iter();
-        points.any(|point| point.force_error.is_some())
+        self.shown()
+            .points
+            .iter()
+            .any(|point| point.force_error.is_some())
     }
 
     /// The shown error of a run.

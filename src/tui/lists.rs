@@ -231,8 +231,9 @@ impl App {
         {
             return self.submit(Command::Goto { step: to }, view);
         }
-        let answers = view.and_then(|view| view.examination()?);
-        let answers = answers.map(|page| choices(page) + page.below.len());
+        let answers = view
+            .and_then(|view| view.examination()?)
+            .map(|page| choices(page) + page.below.len());
         let list = match self.panes.focus {
             Pane::Branches => {
                 let count = view.and_then(|view| Some(view.tree?.branches().len()));

@@ -98,8 +98,8 @@ pub fn mark(cell: &mut Cell, glyph: &str, style: Style) {
 
 /// Wraps a text into lines of this width, with a blank on either side.
 pub fn wrapped(text: &str, width: usize, style: Style) -> Lines {
-    let lines = wrap(text, width.saturating_sub(2)).into_iter();
-    lines
+    wrap(text, width.saturating_sub(2))
+        .into_iter()
         .map(|line| Line::styled(format!(" {line}"), style))
         .collect()
 }

@@ -40,14 +40,19 @@ pub fn draw(buffer: &mut Buffer, inner: Rect, run: &FinishedRun, app: &App, view
     let window = Window::new(&canvas, &bounds, &app.camera, place(selected));
     for (faces, style) in shape.faces.iter().zip([app.theme.faint, app.theme.strong]) {
         for face in faces {
-            let around = face.iter().chain(face.first());
-            let dots: Vec<_> = around.map(|point| window.dot(flat(*point))).collect();
+            let dots: Vec<_> = face
+                .iter()
+                .chain(face.first())
+                .map(|point| window.dot(flat(*point)))
+                .collect();
             canvas.polyline(&dots, style);
         }
     }
     canvas.render(buffer);
-    let others = (0..shape.slaves.len()).filter(|slave| *slave != selected);
-    for slave in others.chain([selected]) {
+    for slave in (0..shape.slaves.len())
+        .filter(|slave| *slave != selected)
+        .chain([selected])
+    {
         let at = |place: Point| canvas.cell(window.dot(place));
         let Some(at) = place(slave).and_then(at) else {
             continue;

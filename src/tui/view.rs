@@ -133,8 +133,9 @@ impl<'a> View<'a> {
     /// Whether the pushes of the shown minor iteration are computed only on demand.
     pub fn is_costly(&self) -> bool {
         let place = self.tree.map(|tree| (tree.current(), self.cursor));
-        let known = place.zip(self.background);
-        known.is_some_and(|(place, background)| background.is_costly(place))
+        place
+            .zip(self.background)
+            .is_some_and(|(place, background)| background.is_costly(place))
     }
 
     /// The solids' point that is inverted or outside the range of its law, once the background thread has found it.

@@ -271,8 +271,11 @@ fn unfollowed(before: &State, state: &State) -> Option<(String, &'static str)> {
     if before.ended != EndedLevel::Iteration {
         return None;
     }
-    let mut pairs = before.contacts.iter().zip(&state.contacts);
-    let other = pairs.find(|(then, now)| then.next != now.mode);
+    let other = before
+        .contacts
+        .iter()
+        .zip(&state.contacts)
+        .find(|(then, now)| then.next != now.mode);
     other.map(|(then, now)| {
         (
             format!(
@@ -294,12 +297,16 @@ fn same_attempt(then: Position, now: Position) -> bool {
 fn laws(states: &[State]) -> Outcome {
     let accepted = states.iter().filter(|state| is_settled(state));
     // The force scale comes from all states, since a single state may have only round-off forces.
-    let all = states.iter().flat_map(|state| &state.contacts);
-    let forces = all.flat_map(|found| [found.f_n, found.f_t.map(|f| f.size())]);
-    let forces = forces.flatten();
+    let forces = states
+        .iter()
+        .flat_map(|state| &state.contacts)
+        .flat_map(|found| [found.f_n, found.f_t.map(|f| f.size())])
+        .flatten();
     let largest = max_abs(forces);
-    let slips = states.iter().flat_map(|state| &state.contacts);
-    let slips = slips.filter_map(|found| Some(found.slip?.size()));
+    let slips = states
+        .iter()
+        .flat_map(|state| &state.contacts)
+        .filter_map(|found| Some(found.slip?.size()));
     let crawl = ALLOWED * slips.fold(0.0, f64::max);
     let (mut count, mut nearly) = (0, String::new());
     for state in accepted {
@@ -465,8 +472,12 @@ fn otherwise(then: &State, now: &State) -> Option<String> {
         return Some("another outcome (`ended`)".into());
     }
     let modes = |found: &ContactResult| (found.mode, found.next);
-    let mut pairs = then.contacts.iter().zip(&now.contacts);
-    let other = pairs.find(|(then, now)| modes(then) != modes(now))?.1;
+    let other = then
+        .contacts
+        .iter()
+        .zip(&now.contacts)
+        .find(|(then, now)| modes(then) != modes(now))?
+        .1;
     let id = other.label();
     Some(format!(
         "contact {} is {}, next {}",

@@ -312,8 +312,10 @@ fn condition(words: &[&str], context: &Context) -> Result<Condition, ParseError>
         }
         ("mode" | "leaves", _) => Err(usage("[NODE] [MODE]")),
         ("margin", [.., value]) if rest.len() <= 2 => {
-            let below = value.parse::<f64>().ok().filter(|below| below.is_finite());
-            let below = below
+            let below = value
+                .parse::<f64>()
+                .ok()
+                .filter(|below| below.is_finite())
                 .ok_or_else(|| ParseError::no_value(value, "margin", "expected a number".into()))?;
             let node = any_or_exact(rest.get(rest.len().wrapping_sub(2)), context)?;
             Ok(Condition::Margin { node, below })

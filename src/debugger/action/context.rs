@@ -88,8 +88,11 @@ pub fn exact(word: &str, context: &Context) -> Result<usize, ParseError> {
 /// in places.
 fn respelled(word: &str, model: &Model) -> Option<usize> {
     let plain = |name: &str| name.replace('-', ".");
-    let nodes = model.nodes.iter().enumerate();
-    let mut called = nodes.filter(|(_, node)| plain(&node.name) == plain(word));
+    let mut called = model
+        .nodes
+        .iter()
+        .enumerate()
+        .filter(|(_, node)| plain(&node.name) == plain(word));
     called
         .next()
         .filter(|_| called.next().is_none())

@@ -178,8 +178,12 @@ fn same(tree: &Tree, a: (usize, usize), b: (usize, usize)) -> Option<Sameness> {
                 .any(|(x, y)| (x - y).abs() > SAME_STATE * size)
     };
     let forces = |frame: &Frame| -> Vec<f64> {
-        let nodes = frame.state.nodes.iter();
-        nodes.flat_map(|node| node.force()).collect()
+        frame
+            .state
+            .nodes
+            .iter()
+            .flat_map(|node| node.force())
+            .collect()
     };
     let (f, g) = (forces(x), forces(y));
     let scale = |frame: &Frame| frame.event.as_ref().map_or(0.0, |event| event.before.scale);

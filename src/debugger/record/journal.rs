@@ -285,10 +285,11 @@ impl Journal {
         #[cfg(mutants)]
         let sync = stickslip_core::mutants::pick("journal-not-synced", sync, false);
         let failed = |source| failure(&self.path, "written", source);
-        let text = notation::line(line);
-        let text = text.map_err(|e| failed(io::Error::other(e)))? + "\n";
-        let written = self.file.write_all(text.as_bytes());
-        let written = written.and_then(|()| if sync { self.file.sync_data() } else { Ok(()) });
+        let text = notation::line(line).map_err(|e| failed(io::Error::other(e)))? + "\n";
+        let written = self
+            .file
+            .write_all(text.as_bytes())
+            .and_then(|()| if sync { self.file.sync_data() } else { Ok(()) });
         match written {
             Ok(()) => self.whole += text.len() as u64,
             // Drop the incomplete line; devices cannot be truncated.

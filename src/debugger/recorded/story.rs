@@ -34,11 +34,10 @@ pub fn story(file: &str, opened: &mut OpenedExchange) -> String {
     }
     for number in 0..opened.lines.len() {
         let (before, line) = (&opened.lines[..number], &opened.lines[number]);
-        let common = before
+        let (along, whose) = before
             .iter()
             .enumerate()
-            .map(|(k, other)| (in_common(line, other), k));
-        let (along, whose) = common
+            .map(|(k, other)| (in_common(line, other), k))
             .max_by_key(|&(along, k)| (along, std::cmp::Reverse(k)))
             .unwrap_or((0, 0));
         text += "\n";

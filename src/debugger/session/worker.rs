@@ -274,8 +274,10 @@ fn run(
     let (mut left, mut hits) = (count, Vec::new());
     let interrupted = || stop.load(Ordering::Relaxed) > 0;
     let most = if count == 0 { 0 } else { u64::MAX };
-    let until = Until::end().minors(most).past_failures();
-    let until = until.interrupted_by(&interrupted);
+    let until = Until::end()
+        .minors(most)
+        .past_failures()
+        .interrupted_by(&interrupted);
     let mut began = Instant::now();
     // Our own solver detects cycles itself.
     let mut watch = solver.stepper().is_none().then(rounds::CycleWatch::default);

@@ -146,11 +146,12 @@ impl Progress {
     ///
     /// # Errors If the file cannot be written, or exists and must stay.
     pub(super) fn write(&self, file: &Path, overwrite: bool) -> Result<(), ProgressError> {
-        let text = notation::lines(self, ron::ser::PrettyConfig::new());
-        let text = text.map_err(|e| ProgressError::Damaged {
-            file: file.to_owned(),
-            line: 1,
-            message: e.to_string(),
+        let text = notation::lines(self, ron::ser::PrettyConfig::new()).map_err(|e| {
+            ProgressError::Damaged {
+                file: file.to_owned(),
+                line: 1,
+                message: e.to_string(),
+            }
         })?;
         Ok(files::write(file, &text, overwrite)?)
     }

@@ -335,10 +335,13 @@ fn whole_number(whole: SolveQuantity, look: &FrameValues) -> Result<f64, LessonE
         },
         SolveQuantity::Majors => f64::from(look.end()?.majors),
         SolveQuantity::Residual => look.residual()?,
-        SolveQuantity::Sliding => {
-            let nodes = look.frame.state.nodes.iter();
-            nodes.filter(|node| node.mode == Mode::Sliding).count() as f64
-        }
+        SolveQuantity::Sliding => look
+            .frame
+            .state
+            .nodes
+            .iter()
+            .filter(|node| node.mode == Mode::Sliding)
+            .count() as f64,
         SolveQuantity::Verdict => return Err(LessonError::NoNumber),
     })
 }

@@ -93,8 +93,10 @@ impl TutorQuestion {
                 )
             }
             Answer::Choice(choices) => {
-                let texts = choices.iter().map(|(text, _)| text.fill(now, "…"));
-                let options = texts.collect::<Result<_, _>>()?;
+                let options = choices
+                    .iter()
+                    .map(|(text, _)| text.fill(now, "…"))
+                    .collect::<Result<_, _>>()?;
                 (
                     AnswerKind::Choice,
                     options,

@@ -167,8 +167,10 @@ impl Part<'_> {
 
     fn whole(&self, name: &str) -> Result<i64, FormatError> {
         let found = self.wholes(name)?;
-        let first = found.first().copied();
-        first.ok_or_else(|| self.broken(name, "is empty; it must be a whole number"))
+        found
+            .first()
+            .copied()
+            .ok_or_else(|| self.broken(name, "is empty; it must be a whole number"))
     }
 
     fn count(&self, name: &str) -> Result<usize, FormatError> {

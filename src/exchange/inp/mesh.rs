@@ -255,13 +255,16 @@ impl Reader {
     /// Index of a surface by name.
     pub(super) fn surface_of(&self, cell: &CardCell<'_>) -> Done<usize> {
         let name = plain(cell.text);
-        let known = self.names.surfaces.get(&self.names.name(&name)).copied();
-        known.ok_or_else(|| {
-            cell.wrong(format!(
-                "there is no surface {}; *SURFACE, NAME=... defines one",
-                short(&name)
-            ))
-        })
+        self.names
+            .surfaces
+            .get(&self.names.name(&name))
+            .copied()
+            .ok_or_else(|| {
+                cell.wrong(format!(
+                    "there is no surface {}; *SURFACE, NAME=... defines one",
+                    short(&name)
+                ))
+            })
     }
 
     /// Adds members to the set named by a parameter, if the card has it.

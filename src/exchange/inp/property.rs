@@ -265,8 +265,9 @@ impl Reader {
             bail!(&first, "{WHAT} is {coefficient:?}; it must not be negative");
         }
         let stick = words.get(1).filter(|cell| !cell.text.is_empty());
-        let stick = stick.map(|cell| positive(cell, "the stick slope"));
-        let stick = stick.transpose()?;
+        let stick = stick
+            .map(|cell| positive(cell, "the stick slope"))
+            .transpose()?;
         if let Some(more) = words.get(2) {
             bail!(
                 more,
@@ -292,8 +293,10 @@ impl Reader {
         let set = self.set_of(set, card.place_of("ELSET"), MeshKind::Elements)?;
         let materials = &self.deck.materials;
         let material = index_of(card, "MATERIAL", "material ", materials, |m| &m.name)?;
-        let members = self.deck.element_sets[set].members.iter();
-        let mut elements = members.map(|&k| &self.deck.elements[k]);
+        let mut elements = self.deck.element_sets[set]
+            .members
+            .iter()
+            .map(|&k| &self.deck.elements[k]);
         let (is, must) = if beams {
             ("not a beam", "*SOLID SECTION")
         } else {

@@ -25,8 +25,10 @@ pub struct DeckError {
 
 /// A word as CalculiX compares it: uppercase, without spaces and quotes.
 pub(super) fn plain(word: &str) -> String {
-    let letters = word.chars().filter(|c| !c.is_whitespace() && *c != '"');
-    letters.flat_map(char::to_uppercase).collect()
+    word.chars()
+        .filter(|c| !c.is_whitespace() && *c != '"')
+        .flat_map(char::to_uppercase)
+        .collect()
 }
 
 /// An error before its file name is known.
@@ -196,12 +198,14 @@ impl Sources {
                 .texts
                 .get(*file)
                 .and_then(|text| text.get(bytes.clone()));
-            let lines = text.unwrap_or_default().lines().enumerate();
-            lines.map(move |(k, text)| SourceLine {
-                text,
-                file: *file,
-                number: first + k + 1,
-            })
+            text.unwrap_or_default()
+                .lines()
+                .enumerate()
+                .map(move |(k, text)| SourceLine {
+                    text,
+                    file: *file,
+                    number: first + k + 1,
+                })
         })
     }
 }

@@ -33,8 +33,11 @@ impl Reader {
                 Some(_) => card.choice("NLGEOM", &["YES", "NO"])? == 0,
             };
         }
-        let increments = card.value("INC").ok().flatten();
-        let increments = increments.and_then(|count| count.parse().ok());
+        let increments = card
+            .value("INC")
+            .ok()
+            .flatten()
+            .and_then(|count| count.parse().ok());
         if card.has("INC") {
             self.deck.add_note(
                 card.place_of("INC"),

@@ -36,8 +36,9 @@ pub(super) fn history(history: &History) -> Result<(), Fault> {
     }
     of_legs(history)?;
     let (least, legs) = (history.least(), path.len() - 1);
-    let smallest = (0..legs).map(|leg| history.on_leg(leg));
-    let smallest = smallest.fold(f64::INFINITY, f64::min);
+    let smallest = (0..legs)
+        .map(|leg| history.on_leg(leg))
+        .fold(f64::INFINITY, f64::min);
     if !(least > 0.0 && least <= smallest) {
         bail!(
             at!["history", "least"],

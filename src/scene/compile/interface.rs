@@ -29,8 +29,10 @@ impl Surfaces {
     /// Numbers of the surfaces that are pieces of a cut surface.
     pub(super) fn cut(&self, spec: &Spec) -> Vec<usize> {
         let listed = self.listed.iter().enumerate();
-        let cut = listed.filter(|(_, listed)| spec.surfaces[**listed].cut);
-        cut.map(|(number, _)| number).collect()
+        listed
+            .filter(|(_, listed)| spec.surfaces[**listed].cut)
+            .map(|(number, _)| number)
+            .collect()
     }
 }
 
@@ -435,8 +437,10 @@ pub(super) fn drop_idle_slaves(
     slaves: &mut Vec<Contact>,
 ) {
     let single = |node: usize| {
-        let mut all = spec.slaves.iter().flat_map(|group| &group.nodes);
-        all.any(|name| names.node(name) == Ok(node))
+        spec.slaves
+            .iter()
+            .flat_map(|group| &group.nodes)
+            .any(|name| names.node(name) == Ok(node))
     };
     slaves.retain(|slave| {
         has_motion(dofs, slave)

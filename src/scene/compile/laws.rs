@@ -162,11 +162,13 @@ pub(super) fn apply(
 /// Marks the tied nodes that, because of supports, can move along one axis only relative to their surfaces.
 pub(super) fn stand_upright(dofs: &Dofs, surfaces: &[Surface], slaves: &mut [Contact]) {
     for slave in slaves.iter_mut().filter(|slave| slave.bond.is_tied()) {
-        let masters = slave
+        let nodes: Vec<usize> = slave
             .surfaces
             .iter()
-            .flat_map(|&s| surfaces[s].elements.iter().flatten());
-        let nodes: Vec<usize> = masters.copied().chain([slave.node]).collect();
+            .flat_map(|&s| surfaces[s].elements.iter().flatten())
+            .copied()
+            .chain([slave.node])
+            .collect();
         let moves = |k: usize| {
             nodes
                 .iter()
@@ -229,11 +231,10 @@ pub(super) fn check_corners(
 /// Whether two surfaces cross or meet at an angle; each is treated as straight between nodes.
 fn cross(nodes: &[Node], surfaces: [&Surface; 2]) -> bool {
     let sides = |surface: &Surface| -> Vec<[[f64; 2]; 2]> {
-        let elements = surface
+        surface
             .elements
             .iter()
-            .flat_map(|element| element.windows(2));
-        elements
+            .flat_map(|element| element.windows(2))
             .map(|pair| [nodes[pair[0]].at, nodes[pair[1]].at])
             .collect()
     };

@@ -37,8 +37,10 @@ impl Layout {
     pub(super) fn new(on_body: Vec<bool>, bodies: &[Body]) -> Self {
         let dofs = Dofs::new(on_body.len(), bodies);
         let components = |(node, &count): (usize, &u8)| {
-            let held = COMPONENTS.iter().take(count.into());
-            held.map(move |component| (node, *component))
+            COMPONENTS
+                .iter()
+                .take(count.into())
+                .map(move |component| (node, *component))
         };
         let of = dofs.count.iter().enumerate().flat_map(components).collect();
         Layout {

@@ -93,12 +93,10 @@ impl DeckObjects<'_> {
 
     fn is_beam_node(&self) -> Vec<bool> {
         let mut on_beam = vec![false; self.deck.nodes.len()];
-        let beams = self
-            .deck
+        self.deck
             .elements
             .iter()
-            .filter(|e| e.kind.family == Family::Beam);
-        beams
+            .filter(|e| e.kind.family == Family::Beam)
             .flat_map(|e| &e.nodes)
             .for_each(|&node| on_beam[node] = true);
         on_beam
@@ -242,8 +240,10 @@ impl DeckObjects<'_> {
             .map(|&n| self.deck.nodes[n].label as usize)
             .collect();
         let own = self.deck.node_sets.iter().find(|set| {
-            let used = set.members.iter().filter(|&&node| self.used[node]);
-            used.eq(nodes.iter())
+            set.members
+                .iter()
+                .filter(|&&node| self.used[node])
+                .eq(nodes.iter())
         });
         let Some(Nodes::Given { id, sets, .. }) = self.spec.nodes.first_mut() else {
             return wanted.to_owned();
@@ -320,8 +320,8 @@ impl DeckObjects<'_> {
     /// Pressures: sides with the same pressure form one load.
     fn pressures(&mut self, clock: &Clock) {
         let listed = |step: &Step| {
-            let pressed = step.pressures.iter();
-            pressed
+            step.pressures
+                .iter()
                 .map(|p| ((p.element, p.side), p.value, p.amplitude, p.place))
                 .collect()
         };
@@ -528,8 +528,11 @@ impl DeckObjects<'_> {
             history.increments = clock.increments().collect();
         }
         let smallest = clock.increments().fold(f64::INFINITY, f64::min);
-        let least = deck.steps.iter().filter_map(|step| step.time.least);
-        let least = least.min_by(f64::total_cmp);
+        let least = deck
+            .steps
+            .iter()
+            .filter_map(|step| step.time.least)
+            .min_by(f64::total_cmp);
         history.least = least.filter(|&least| least < smallest);
         for (k, step) in deck.steps.iter().enumerate() {
             for place in [

@@ -21,8 +21,13 @@ impl SideLine {
     /// The nodes in walking order, each once.
     pub fn nodes(&self) -> Vec<usize> {
         let mut seen = HashSet::new();
-        let sides = self.pieces.iter().flatten().flatten().copied();
-        sides.filter(|n| seen.insert(*n)).collect()
+        self.pieces
+            .iter()
+            .flatten()
+            .flatten()
+            .copied()
+            .filter(|n| seen.insert(*n))
+            .collect()
     }
 
     /// Number of nodes per side, if this is one open piece with equal sides, that is, a chain.

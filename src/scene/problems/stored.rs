@@ -265,9 +265,14 @@ impl<'s> StoredParts<'s> {
             state: InitialState::default(),
         };
         let spec = self.spec;
-        let motions = spec.moved.iter().flat_map(|moved| [moved.x, moved.y]);
-        let lengths = motions.flatten().chain(spec.contacts.iter().map(|c| c.gap));
-        let largest = lengths.map(f64::abs).fold(0.0, f64::max);
+        let largest = spec
+            .moved
+            .iter()
+            .flat_map(|moved| [moved.x, moved.y])
+            .flatten()
+            .chain(spec.contacts.iter().map(|c| c.gap))
+            .map(f64::abs)
+            .fold(0.0, f64::max);
         Problem {
             tangents: 1,
             title: spec.title.clone(),

@@ -74,14 +74,15 @@ fn hex((r, g, b): Colour) -> String {
 }
 
 fn joined(points: &[(f64, f64)]) -> String {
-    let points = points.iter();
     let points: Vec<String> = points
+        .iter()
         .map(|(x, y)| format!("{},{}", short(*x), short(*y)))
         .collect();
     points.join(" ")
 }
 
 fn escaped(text: &str) -> String {
-    let text = text.replace('&', "&amp;");
-    text.replace('<', "&lt;").replace('>', "&gt;")
+    text.replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
 }

@@ -93,8 +93,12 @@ fn done(offer: &Offer) -> String {
 /// The lines of the list, and the index of the selected one.
 fn lines<'a>(left: &[&'a Offer], at: usize, width: usize, app: &App) -> (Vec<Line<'a>>, usize) {
     let theme = &app.theme;
-    let widths = left.iter().map(|offer| offer.name.width());
-    let names = widths.max().unwrap_or(0).min(width / 2);
+    let names = left
+        .iter()
+        .map(|offer| offer.name.width())
+        .max()
+        .unwrap_or(0)
+        .min(width / 2);
     let is_new = app.offers.iter().all(|offer| offer.reached.is_none());
     let (mut lines, mut here, mut group) = (Vec::new(), 0, None);
     for (index, offer) in left.iter().enumerate() {

@@ -122,8 +122,10 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
 
 /// The iterations of a slave node up to the shown one.
 fn trail(slave: usize, view: &View) -> Vec<TrailPoint> {
-    let frames = view.frames[..=view.cursor].iter().rev();
-    let solved = frames.filter(|frame| frame.intervention.is_none());
+    let solved = view.frames[..=view.cursor]
+        .iter()
+        .rev()
+        .filter(|frame| frame.intervention.is_none());
     trail::trail(solved.map_while(|frame| frame.event.as_deref()), slave)
 }
 
@@ -412,8 +414,12 @@ fn pushes(
     let Some(largest) = found.first().map(|push| of(push).abs()) else {
         return none(buffer, "no change at any node moved it");
     };
-    let names = found.iter().map(|push| view.slave(push.slave).width());
-    let name = names.max().unwrap_or(0).min(12);
+    let name = found
+        .iter()
+        .map(|push| view.slave(push.slave).width())
+        .max()
+        .unwrap_or(0)
+        .min(12);
     let number = 11;
     let target = view.slave(slave);
     let room = usize::from(area.width).saturating_sub(name + number + 6);

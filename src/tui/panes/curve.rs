@@ -75,8 +75,10 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
 fn span(points: &[[f64; 2]], axis: usize, noise: f64) -> [f64; 2] {
     const MOST: f64 = 1e300;
     let values = || {
-        let values = points.iter().map(|point| point[axis]);
-        values.filter(|x| x.abs() < MOST)
+        points
+            .iter()
+            .map(|point| point[axis])
+            .filter(|x| x.abs() < MOST)
     };
     let (low, high) = (values().fold(0.0, f64::min), values().fold(0.0, f64::max));
     match high - low {

@@ -48,14 +48,20 @@ pub const PANE: PaneEntry = PaneEntry {
 fn copied(app: &App, view: &View) -> Result<NamedText, String> {
     if let Some(run) = &view.model.finished {
         // As many as in the list Try.
-        let cures = run.findings.iter().filter(|found| !found.cure.is_empty());
-        let cure = cures.take(app.answer + 1).last();
+        let cure = run
+            .findings
+            .iter()
+            .filter(|found| !found.cure.is_empty())
+            .take(app.answer + 1)
+            .last();
         let cure = cure.filter(|cure| !cure.lines.is_empty());
         let cure = cure.ok_or("this cure has no lines for the deck")?;
         return Ok(("the lines for the deck".into(), cure.lines.clone()));
     }
-    let found = view.examination().flatten();
-    let found = found.ok_or("no diagnosis yet; press d")?;
+    let found = view
+        .examination()
+        .flatten()
+        .ok_or("no diagnosis yet; press d")?;
     Ok(("the diagnosis".into(), found.lines().join("\n")))
 }
 

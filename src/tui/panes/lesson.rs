@@ -115,8 +115,9 @@ fn todo(tutor: &Tutor, width: usize, theme: &Theme) -> paint::Lines {
 /// The tutor's text, wrapped. A mark precedes the reply to an answer, so that it does not depend on colour.
 pub fn tutor_lines(tutor: &Tutor, width: usize, theme: &Theme) -> paint::Lines {
     let page = tutor.page();
-    let parts = page.iter().flat_map(|part| paragraph(part, width, theme));
-    parts.collect()
+    page.iter()
+        .flat_map(|part| paragraph(part, width, theme))
+        .collect()
 }
 
 /// The tutor's reply to the last answer.

@@ -78,8 +78,9 @@ impl Columns {
             .into_iter()
             .find(|columns| columns.width() <= width);
         wide.unwrap_or_else(|| {
-            let fewer = (0..6).rev().map(|shown| Columns { shown, ..last });
-            fewer
+            (0..6)
+                .rev()
+                .map(|shown| Columns { shown, ..last })
                 .into_iter()
                 .find(|columns| columns.width() <= width)
                 .unwrap_or(Columns { shown: 0, ..last })
@@ -118,8 +119,10 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let count = view.model.contacts.len();
     let selected = app.slave(view);
     let order = app.order(view);
-    let at = order.iter().position(|slave| *slave == selected);
-    let at = at.unwrap_or(0);
+    let at = order
+        .iter()
+        .position(|slave| *slave == selected)
+        .unwrap_or(0);
     let title = title(at, order.len(), count, app);
     let inner = frame(buffer, area, Pane::Nodes, &title, app);
     if count == 0 {
@@ -424,8 +427,13 @@ fn number_style(column: usize, record: &ContactRecord, app: &App) -> Style {
         5 => TestedQuantity::Slip,
         _ => return app.theme.text,
     };
-    let mut tests = record.decision.tests.iter().flatten();
-    if tests.any(|test| test.tested == tested && record.is_tie(test)) {
+    if record
+        .decision
+        .tests
+        .iter()
+        .flatten()
+        .any(|test| test.tested == tested && record.is_tie(test))
+    {
         app.theme.warning
     } else {
         app.theme.text

@@ -85,8 +85,8 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         let room = usize::from(plot.width) / NUMBER;
         let first = view.residuals.len().saturating_sub(room);
         let row = |of: &dyn Fn(&(u32, Norms)) -> String| {
-            let cells = view.residuals[first..].iter();
-            let text: String = cells
+            let text: String = view.residuals[first..]
+                .iter()
                 .map(|one| format!("{:>1$}", of(one), NUMBER))
                 .collect();
             Line::styled(text, theme.faint)
@@ -99,11 +99,12 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         paint::lines(buffer, plot, &rows);
     } else if convergence::fits(plot) {
         // Values that an attached solver does not report are left out.
-        let text = view
+        let points: Vec<Point> = view
             .residuals
             .iter()
-            .filter(|(_, norms)| !view.is_unreported(norms.relative));
-        let points: Vec<Point> = text.map(|one| point(one, view)).collect();
+            .filter(|(_, norms)| !view.is_unreported(norms.relative))
+            .map(|one| point(one, view))
+            .collect();
         convergence::draw(buffer, plot, &points, theme);
     }
 }

@@ -109,8 +109,10 @@ pub fn picture(buffer: &mut Buffer, inner: Rect, app: &App, view: &View) -> Opti
     let given = shown_conditions(view, &window);
     let (forces, longest) = forces(&window, view);
     let arrows = || {
-        let arrows = given.arrows.iter();
-        arrows.map(|one| drawn(one, &forces, &window, app))
+        given
+            .arrows
+            .iter()
+            .map(|one| drawn(one, &forces, &window, app))
     };
     for (line, style, _) in arrows() {
         canvas.dotted(line[0], line[1], style, SPARSE);
@@ -155,8 +157,9 @@ fn field(inner: Rect, app: &App, view: &View) -> (Canvas, Window) {
     let projection = app.camera.projection;
     let place = |node: usize| view.magnified(node, (magnified, projection));
     let selected = view.model.contacts.get(app.slave(view));
-    let towards = selected.map(|slave| place(slave.node));
-    let towards = towards.filter(|place| place.iter().all(|x| x.is_finite()));
+    let towards = selected
+        .map(|slave| place(slave.node))
+        .filter(|place| place.iter().all(|x| x.is_finite()));
     let bounds = bounds(view.model, projection, &place);
     let window = Window::new(&canvas, &bounds, &app.camera, towards);
     (
@@ -183,8 +186,13 @@ pub fn slave_at(area: Rect, app: &App, view: &View, at: Position) -> Option<usiz
         let far = u32::from(x.abs_diff(at.x)) + 2 * u32::from(y.abs_diff(at.y));
         (far <= NEAR).then_some((far, slave))
     };
-    let near = view.model.contacts.iter().enumerate().filter_map(far);
-    near.min().map(|(_, slave)| slave)
+    view.model
+        .contacts
+        .iter()
+        .enumerate()
+        .filter_map(far)
+        .min()
+        .map(|(_, slave)| slave)
 }
 
 /// Draws the curve of an element. Where its nodes are close, straight lines between them set the same dots.
@@ -290,10 +298,11 @@ fn gives_way(cell: &Cell) -> bool {
 
 /// Mean position of nodes.
 fn mean(nodes: impl Iterator<Item = usize>, window: &Window, view: &View) -> Point {
-    let places = nodes.map(|node| window.place(view, node));
-    let (sum, count) = places.fold(([0.0; 2], 0.0), |(s, count), p| {
-        ([s[0] + p[0], s[1] + p[1]], count + 1.0)
-    });
+    let (sum, count) = nodes
+        .map(|node| window.place(view, node))
+        .fold(([0.0; 2], 0.0), |(s, count), p| {
+            ([s[0] + p[0], s[1] + p[1]], count + 1.0)
+        });
     sum.map(|x| x / count)
 }
 
@@ -372,8 +381,12 @@ fn forces(window: &Window, view: &View) -> (Vec<[Dot; 2]>, f64) {
         .filter(|f| f.is_finite())
         .fold(0.0, f64::max);
     let scale = FORCE * window.extent / largest;
-    let nodes = view.model.contacts.iter().zip(&event.nodes).enumerate();
-    let lines = nodes
+    let lines = view
+        .model
+        .contacts
+        .iter()
+        .zip(&event.nodes)
+        .enumerate()
         .filter(|(_, (_, node))| size(node.f_n, node.f_t) > 0.0)
         .map(|(slave, (contact, _))| {
             let force = window.projection.force(view.model, event, slave);

@@ -173,16 +173,16 @@ fn rows(page: Page, width: usize, view: Option<&View>) -> Vec<Row> {
 
 /// The text of a finished run; sentences wrap, tables do not.
 fn printed(lines: Vec<stickslip_debugger::recorded::log::LogLine>, width: usize) -> Vec<Row> {
-    let printed = lines
+    let wrapped = lines
         .into_iter()
-        .filter(|said| said.how == LogOrigin::Printed);
-    let wrapped = printed.flat_map(|said| {
-        if said.text.contains("  ") {
-            vec![said.text]
-        } else {
-            paint::wrap(&said.text, width.saturating_sub(2))
-        }
-    });
+        .filter(|said| said.how == LogOrigin::Printed)
+        .flat_map(|said| {
+            if said.text.contains("  ") {
+                vec![said.text]
+            } else {
+                paint::wrap(&said.text, width.saturating_sub(2))
+            }
+        });
     let row = |text| Row {
         text,
         style: |theme| theme.text,

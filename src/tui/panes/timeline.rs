@@ -352,8 +352,10 @@ fn bracket(
         _ => return,
     };
     let first = (column.at + 1).saturating_sub(cycle.period as usize);
-    let from = columns.iter().find(|column| column.at >= first);
-    let from = from.map_or(column.x, |column| column.x);
+    let from = columns
+        .iter()
+        .find(|column| column.at >= first)
+        .map_or(column.x, |column| column.x);
     let text = format!("{}-cycle", cycle.period);
     let ends = (from, column.x);
     columns::bracket(buffer, inner.right(), y, ends, &text, app.theme.bad);

@@ -72,10 +72,11 @@ fn rounded(range: [f64; 2], (long, apart): (f64, f64)) -> [f64; 2] {
 
 /// The range of some values with 0.
 fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
-    let finite = values.filter(|value| value.is_finite());
-    let (low, high) = finite.fold((0.0_f64, 0.0_f64), |(low, high), x| {
-        (low.min(x), high.max(x))
-    });
+    let (low, high) = values
+        .filter(|value| value.is_finite())
+        .fold((0.0_f64, 0.0_f64), |(low, high), x| {
+            (low.min(x), high.max(x))
+        });
     if high > low { [low, high] } else { [0.0, 1.0] }
 }
 
@@ -143,8 +144,9 @@ pub(super) fn cone(sheet: &mut Sheet, shown: &ExportState, high: f64) -> Result<
         let record = shown.event.and_then(|event| event.nodes.get(slave));
         record.map_or(0.0, |record| record.f_n.hypot(record.f_t))
     };
-    let slaves = 0..model.contacts.len();
-    let largest = slaves.rev().max_by(|a, b| size(*a).total_cmp(&size(*b)));
+    let largest = (0..model.contacts.len())
+        .rev()
+        .max_by(|a, b| size(*a).total_cmp(&size(*b)));
     let Some(slave) = shown.picture.node.or(largest) else {
         return sheet.paragraph(&["the scene has no slave nodes".to_owned()], LABEL, GREY);
     };

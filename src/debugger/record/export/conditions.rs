@@ -70,8 +70,7 @@ impl ShapeDrawing<'_> {
     fn aside(&self, arrow: &ConditionArrow) -> (f64, f64) {
         let model = &self.shown.scene.model;
         let is_covered = self.shown.event.is_some_and(|event| {
-            let mut contacts = model.contacts.iter().enumerate();
-            contacts.any(|(slave, contact)| {
+            model.contacts.iter().enumerate().any(|(slave, contact)| {
                 let force = || OBLIQUE.force(model, event, slave);
                 (self.now)(contact.node) == arrow.at && arrow.is_under(force())
             })

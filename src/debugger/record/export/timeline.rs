@@ -119,8 +119,10 @@ impl Bands {
             (per_band, per_band * (bands as usize).max(1))
         };
         // The largest cells with which all minor iterations fit, or else the smallest.
-        let factors = (0..=20).map(|k| LARGEST - 0.1 * f64::from(k));
-        let fits = factors.into_iter().find(|f| fitting(*f).1 >= solved);
+        let fits = (0..=20)
+            .map(|k| LARGEST - 0.1 * f64::from(k))
+            .into_iter()
+            .find(|f| fitting(*f).1 >= solved);
         let factor = fits.unwrap_or(1.0);
         let (per_band, most) = fitting(factor);
         let (count, per_band) = (solved.min(most), per_band.min(solved.max(1)));

@@ -124,8 +124,12 @@ fn explained(mut run: CalculixRun, deck: Option<Deck>) -> Result<CalculixRun, St
     let mut shape = deck.as_ref().map(DeckShape::new);
     if let Some(shape) = shape.as_ref().filter(|_| run.files.slaves.is_empty()) {
         let label = |node: usize| shape.deck.nodes[node].label.try_into().ok();
-        let nodes = shape.pairs.iter().flat_map(|pair| &pair.nodes);
-        let labels: BTreeSet<u32> = nodes.filter_map(|node| label(node.node)).collect();
+        let labels: BTreeSet<u32> = shape
+            .pairs
+            .iter()
+            .flat_map(|pair| &pair.nodes)
+            .filter_map(|node| label(node.node))
+            .collect();
         run.files.slaves = labels.into_iter().map(Slave::Node).collect();
         run = CalculixRun::new(run.name, run.files);
     }

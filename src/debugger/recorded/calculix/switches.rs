@@ -30,8 +30,7 @@ pub fn grid(run: &CalculixRun, pressures: &[(u32, f64)]) -> Result<(Grid, usize)
     let mut lost = 0;
     let last = run.files.iterations.len().checked_sub(1);
     for (slave, of) in run.files.slaves.iter().enumerate() {
-        let labels = of.nodes().iter().copied();
-        let nodes: Vec<usize> = labels.filter_map(place).collect();
+        let nodes: Vec<usize> = of.nodes().iter().copied().filter_map(place).collect();
         lost += usize::from(nodes.is_empty());
         let found = run.switching_of(slave);
         let whole = |count: usize| i32::try_from(count).unwrap_or(i32::MAX);

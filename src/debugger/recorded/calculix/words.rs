@@ -25,8 +25,11 @@ const MOST_MEMBERS: usize = 4;
 /// Numbers of steps, increments, attempts, iterations and contacts.
 fn size(run: &CalculixRun) -> String {
     let files = &run.files;
-    let attempts = files.attempts.iter();
-    let mut increments: Vec<_> = attempts.map(|a| (a.step, a.increment)).collect();
+    let mut increments: Vec<_> = files
+        .attempts
+        .iter()
+        .map(|a| (a.step, a.increment))
+        .collect();
     increments.dedup();
     let mut steps: Vec<_> = increments.iter().map(|(step, _)| step).collect();
     steps.dedup();
@@ -177,8 +180,11 @@ pub fn contact(run: &CalculixRun, iteration: usize, slave: usize) -> String {
     };
     if let Some(switching) = run.switching_of(slave) {
         let attempt = run.attempt(iteration);
-        let here = switching.attempts.iter().find(|(own, _)| *own == attempt);
-        let here = here.map_or(0, |(_, count)| *count);
+        let here = switching
+            .attempts
+            .iter()
+            .find(|(own, _)| *own == attempt)
+            .map_or(0, |(_, count)| *count);
         let (place, most) = switching.most();
         let _ = write!(
             text,
@@ -213,9 +219,8 @@ pub fn text(run: &CalculixRun) -> String {
         let _ = writeln!(text, "note: {note}");
     }
     let _ = write!(text, "{NO_MODES_IN_FULL}\n\n{}", attempts(run));
-    let attempts = 0..run.files.attempts.len();
-    let cycles = attempts.filter_map(|k| Some((k, cycle(run, k)?)));
-    let cycles: Vec<String> = cycles
+    let cycles: Vec<String> = (0..run.files.attempts.len())
+        .filter_map(|k| Some((k, cycle(run, k)?)))
         .map(|(k, cycle)| format!("{}: {cycle}\n", run.attempt_name(k)))
         .collect();
     text += &if cycles.is_empty() {

@@ -16,13 +16,16 @@ const ROW: usize = 4;
 
 /// A body that no support, tie or contact holds.
 pub fn unconnected(shape: &DeckShape) -> Vec<RunFinding> {
-    let far = shape
+    let far: BTreeSet<usize> = shape
         .ties
         .iter()
-        .filter(|tie| tie.closed().next().is_none());
-    let far: BTreeSet<usize> = far.flat_map(|tie| tie.groups).collect();
-    let groups = shape.groups().into_iter();
-    let alone = groups.filter(|g| shape.pairs_of(*g).next().is_none() && !far.contains(g));
+        .filter(|tie| tie.closed().next().is_none())
+        .flat_map(|tie| tie.groups)
+        .collect();
+    let alone = shape
+        .groups()
+        .into_iter()
+        .filter(|g| shape.pairs_of(*g).next().is_none() && !far.contains(g));
     let finding = |group: usize| {
         let name = shape.group_name(group);
         let free = GroupMotion::new(shape, group, 0).free(shape);
@@ -47,8 +50,7 @@ pub fn unmerged(shape: &DeckShape) -> Vec<RunFinding> {
     // A surface may have faces of several bodies: then its slave nodes tell.
     let connected = |groups: [usize; 2], nodes: &[[usize; 2]]| {
         let nodes: BTreeSet<usize> = nodes.iter().flatten().copied().collect();
-        let mut pairs = shape.pairs.iter().chain(&shape.ties);
-        pairs.any(|own| {
+        shape.pairs.iter().chain(&shape.ties).any(|own| {
             let of_groups = own.groups == groups || own.groups == [groups[1], groups[0]];
             of_groups || own.nodes.iter().any(|slave| nodes.contains(&slave.node))
         })
@@ -140,15 +142,18 @@ fn coincident(shape: &DeckShape) -> BTreeMap<[usize; 2], Vec<[usize; 2]>> {
 /// The outer faces with all their nodes in a set, as lines of *SURFACE.
 fn faces_of(shape: &DeckShape, nodes: &BTreeSet<usize>) -> Vec<String> {
     let deck = shape.deck;
-    let sides = deck.elements.iter().enumerate().flat_map(|(k, element)| {
-        let sides = 0..element.kind.cell.sides().len();
-        sides.map(move |side| (k, side))
-    });
-    let within = sides.filter(|&(element, side)| {
-        let (corners, middles) = deck.face(element, side);
-        let mut all = corners.iter().chain(&middles);
-        all.all(|node| nodes.contains(node))
-    });
+    let within = deck
+        .elements
+        .iter()
+        .enumerate()
+        .flat_map(|(k, element)| (0..element.kind.cell.sides().len()).map(move |side| (k, side)))
+        .filter(|&(element, side)| {
+            let (corners, middles) = deck.face(element, side);
+            corners
+                .iter()
+                .chain(&middles)
+                .all(|node| nodes.contains(node))
+        });
     within
         .map(|(element, side)| shape.surface_line(element, side))
         .collect()

@@ -83,10 +83,10 @@ pub fn examine(deck: Option<&DeckShape>, run: Option<&CalculixRun>) -> Vec<RunFi
     found.extend(findings(RULES));
     let mut symptoms = findings(SYMPTOMS);
     if !found.is_empty() {
-        let advice = symptoms
+        symptoms
             .iter_mut()
-            .flat_map(|f| [&mut f.cure, &mut f.lines]);
-        advice.for_each(String::clear);
+            .flat_map(|f| [&mut f.cure, &mut f.lines])
+            .for_each(String::clear);
     }
     found.append(&mut symptoms);
     if let Some(run) = run.filter(|_| !is_reversed) {

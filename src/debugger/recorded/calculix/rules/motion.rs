@@ -64,8 +64,11 @@ impl GroupMotion {
 
     /// The loaded nodes.
     pub fn loaded(&self) -> BTreeSet<usize> {
-        let nodes = self.forces.values().flat_map(|force| &force.nodes);
-        nodes.copied().collect()
+        self.forces
+            .values()
+            .flat_map(|force| &force.nodes)
+            .copied()
+            .collect()
     }
 
     /// The rigid motion that moves a point along a direction.
@@ -106,16 +109,21 @@ impl GroupMotion {
             supports[(k, k)] += largest;
         }
         let eigen = supports.symmetric_eigen();
-        let values = eigen.eigenvalues.iter().enumerate();
-        let free = values.filter(|(_, value)| **value < FREE * largest);
-        free.map(|(k, _)| eigen.eigenvectors.column(k).into_owned())
+        eigen
+            .eigenvalues
+            .iter()
+            .enumerate()
+            .filter(|(_, value)| **value < FREE * largest)
+            .map(|(k, _)| eigen.eigenvectors.column(k).into_owned())
             .collect()
     }
 
     /// Whether the load does work on one of the motions.
     pub fn is_loaded(&self, free: &[Motion]) -> bool {
-        let work = free.iter().map(|motion| motion.dot(&self.load).abs());
-        work.fold(0.0, f64::max) > LOADED * self.load.norm()
+        free.iter()
+            .map(|motion| motion.dot(&self.load).abs())
+            .fold(0.0, f64::max)
+            > LOADED * self.load.norm()
     }
 }
 
@@ -173,10 +181,11 @@ fn forces(shape: &DeckShape, step: usize) -> Vec<Force> {
         let Some(first) = faces.first() else {
             continue;
         };
-        let parts = faces
+        let volume = faces
             .iter()
-            .map(|face| face.area * (face.centre - first.centre).dot(&face.normal));
-        let volume = parts.sum::<f64>() / if deck.is_solid() { 3.0 } else { 2.0 };
+            .map(|face| face.area * (face.centre - first.centre).dot(&face.normal))
+            .sum::<f64>()
+            / if deck.is_solid() { 3.0 } else { 2.0 };
         let per_volume = match weight.load {
             Volume::Force(force) => Vector::from(force),
             Volume::Gravity(acceleration) => {
@@ -215,9 +224,11 @@ pub fn words(free: &[Motion]) -> String {
 /// Projection onto the eigenvectors with eigenvalues above a limit.
 fn space(of: Matrix3<f64>, least: f64) -> Matrix3<f64> {
     let eigen = of.symmetric_eigen();
-    let values = eigen.eigenvalues.iter().enumerate();
-    let within = values.filter(|(_, value)| **value > least);
-    within
+    eigen
+        .eigenvalues
+        .iter()
+        .enumerate()
+        .filter(|(_, value)| **value > least)
         .map(|(k, _)| eigen.eigenvectors.column(k) * eigen.eigenvectors.column(k).transpose())
         .sum()
 }
@@ -232,11 +243,15 @@ fn names(mut space: Matrix3<f64>) -> Vec<String> {
         }
     }
     let eigen = space.symmetric_eigen();
-    let values = eigen.eigenvalues.iter().enumerate();
-    let rest = values.filter(|(_, value)| **value > 0.5).map(|(k, _)| {
-        let along: Vector = eigen.eigenvectors.column(k).into_owned();
-        vector(along * along[along.iamax()].signum())
-    });
+    let rest = eigen
+        .eigenvalues
+        .iter()
+        .enumerate()
+        .filter(|(_, value)| **value > 0.5)
+        .map(|(k, _)| {
+            let along: Vector = eigen.eigenvectors.column(k).into_owned();
+            vector(along * along[along.iamax()].signum())
+        });
     names.extend(rest);
     names
 }

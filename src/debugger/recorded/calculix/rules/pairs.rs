@@ -37,10 +37,10 @@ pub fn reversed_faces(shape: &DeckShape) -> Vec<RunFinding> {
         let before = found.len();
         let both = [(&pair.slaves, &pair.masters), (&pair.masters, &pair.slaves)];
         let both = both.map(|(own, other)| {
-            let centres = other
+            let mut points: Vec<Vector> = other
                 .iter()
-                .filter_map(|face| shape.element_centre(face.element));
-            let mut points: Vec<Vector> = centres.collect();
+                .filter_map(|face| shape.element_centre(face.element))
+                .collect();
             if points.is_empty() {
                 points.extend(pair.nodes.iter().map(|node| shape.at(node.node)));
             }
@@ -97,8 +97,9 @@ fn reversed(
     let label = |side: usize| format!("S{}", side + 1);
     // The outer side of the same element that looks at the other surface.
     let better = |face: &SurfaceFace| {
-        let faces = shape.outer_faces(face.element);
-        let faces = faces.filter(|face| !looks_away(face, others));
+        let faces = shape
+            .outer_faces(face.element)
+            .filter(|face| !looks_away(face, others));
         let to = |face: &SurfaceFace| facing(face, others).unwrap_or(-1.0);
         faces.max_by(|a, b| to(a).total_cmp(&to(b)))
     };
@@ -163,11 +164,16 @@ fn reversed(
 
 /// The outer faces of a body that look at the nearest of some points.
 fn faces_towards(shape: &DeckShape, body: usize, others: &SortedPoints) -> Vec<SurfaceFace> {
-    let outer = shape.elements(body).flat_map(|k| shape.outer_faces(k));
-    let towards = outer.filter_map(|face| Some((facing(&face, others)?, face)));
-    let mut towards: Vec<(f64, SurfaceFace)> = towards.collect();
-    let ahead = towards.iter().filter(|(cosine, _)| *cosine > AWAY);
-    let normal: Vector = ahead.map(|(_, face)| face.normal).sum();
+    let mut towards: Vec<(f64, SurfaceFace)> = shape
+        .elements(body)
+        .flat_map(|k| shape.outer_faces(k))
+        .filter_map(|face| Some((facing(&face, others)?, face)))
+        .collect();
+    let normal: Vector = towards
+        .iter()
+        .filter(|(cosine, _)| *cosine > AWAY)
+        .map(|(_, face)| face.normal)
+        .sum();
     towards
         .retain(|(cosine, face)| face.normal.dot(&normal) > AWAY * normal.norm() && *cosine > 0.0);
     towards.into_iter().map(|(_, face)| face).collect()
@@ -177,8 +183,7 @@ fn faces_towards(shape: &DeckShape, body: usize, others: &SortedPoints) -> Vec<S
 pub fn tie_too_far(shape: &DeckShape) -> Vec<RunFinding> {
     let too_far = shape.ties.iter().filter_map(|tie| {
         let far: Vec<_> = tie.nodes.iter().filter(|node| !tie.is_closed(node)).collect();
-        let most = far.iter().map(|node| node.gap.abs().hypot(node.beyond));
-        let most = most.fold(0.0, f64::max);
+        let most = far.iter().map(|node| node.gap.abs().hypot(node.beyond)).fold(0.0, f64::max);
         (!far.is_empty()).then(|| RunFinding {
             rule: "tie out of reach",
             cause: format!(
@@ -210,8 +215,7 @@ pub fn overlap(shape: &DeckShape) -> Vec<RunFinding> {
         if is_meant || pair.closes.is_some() || depth > 0.5 * pair.sizes[1] {
             return None;
         }
-        let laws = shape.stiffness(pair).zip(shape.young(pair));
-        let pressure = laws.map(|(stiffness, (young, _))| stiffness * depth / young);
+        let pressure = shape.stiffness(pair).zip(shape.young(pair)).map(|(stiffness, (young, _))| stiffness * depth / young);
         if pressure.is_some_and(|pressure| pressure < LIGHT) {
             return None;
         }
@@ -343,9 +347,11 @@ pub fn constrained_slaves(shape: &DeckShape) -> Vec<RunFinding> {
         let mut against = supports.clone().filter(is_against);
         let held: BTreeSet<usize> = against.clone().map(|value| value.node).collect();
         if let Some(first) = against.next() {
-            let rest = supports.clone();
-            let rest = rest.filter(|value| value.place == first.place && !is_against(value));
-            let rest: Vec<String> = rest.map(|value| support_line(shape, value)).collect();
+            let rest: Vec<String> = supports
+                .clone()
+                .filter(|value| value.place == first.place && !is_against(value))
+                .map(|value| support_line(shape, value))
+                .collect();
             found.push(RunFinding {
                 rule: "constrained slave nodes",
                 cause: format!(
@@ -367,8 +373,10 @@ pub fn constrained_slaves(shape: &DeckShape) -> Vec<RunFinding> {
             });
         }
         let shared = |nodes: &mut dyn Iterator<Item = &SlaveGap>| -> BTreeSet<usize> {
-            let nodes = nodes.map(|node| node.node);
-            nodes.filter(|node| own.contains_key(node)).collect()
+            nodes
+                .map(|node| node.node)
+                .filter(|node| own.contains_key(node))
+                .collect()
         };
         let tied = shared(&mut shape.ties.iter().flat_map(PairShape::closed));
         let twice = shared(&mut shape.pairs[..k].iter().flat_map(|pair| &pair.nodes));
@@ -418,8 +426,9 @@ fn remaining(
     shape: &DeckShape,
     name: &str,
 ) -> String {
-    let rest = own.keys().filter(|node| !without.contains(node));
-    let rest: Vec<String> = rest
+    let rest: Vec<String> = own
+        .keys()
+        .filter(|node| !without.contains(node))
         .map(|&node| format!("{},", shape.deck.nodes[node].label))
         .collect();
     if rest.is_empty() {
@@ -431,8 +440,11 @@ fn remaining(
 
 /// Slave surfaces coarser than their master.
 pub fn coarse_slave(shape: &DeckShape) -> Vec<RunFinding> {
-    let coarse = shape.pairs.iter().filter(|pair| !pair.slaves.is_empty());
-    let coarse = coarse.filter(|pair| pair.sizes[0] > COARSE * pair.sizes[1]);
+    let coarse = shape
+        .pairs
+        .iter()
+        .filter(|pair| !pair.slaves.is_empty())
+        .filter(|pair| pair.sizes[0] > COARSE * pair.sizes[1]);
     coarse
         .map(|pair| {
             let deck = shape.deck;

@@ -131,11 +131,11 @@ pub fn chatter(run: &CalculixRun, shape: Option<&DeckShape>) -> Vec<RunFinding> 
         _ => (attempts, 0),
     };
     let often = |counted: &dyn Fn(&Switching) -> (usize, usize)| -> Vec<_> {
-        let all = run
-            .switching
+        run.switching
             .iter()
-            .map(|found| (found.slave, counted(found)));
-        all.filter(|(_, (_, count))| *count >= CHATTER).collect()
+            .map(|found| (found.slave, counted(found)))
+            .filter(|(_, (_, count))| *count >= CHATTER)
+            .collect()
     };
     let (mut counted, mut when) = (often(&in_last), "the last attempt".to_owned());
     if counted.is_empty() {
@@ -155,8 +155,10 @@ pub fn chatter(run: &CalculixRun, shape: Option<&DeckShape>) -> Vec<RunFinding> 
     };
     let masters = masters(run, attempt, &slaves().collect());
     let softer = shape.and_then(|shape| {
-        let mut pairs = slaves().filter_map(|slave| Some(pair_of(run, shape, slave)?.1));
-        let pair = pairs.next().or(shape.pairs.first())?;
+        let pair = slaves()
+            .filter_map(|slave| Some(pair_of(run, shape, slave)?.1))
+            .next()
+            .or(shape.pairs.first())?;
         let line = shape.law(pair).normal_place.line;
         match (shape.stiffness(pair), shape.young(pair)) {
             (Some(stiffness), _) => Some((
@@ -199,8 +201,11 @@ fn pair_of<'s>(
     slave: usize,
 ) -> Option<(usize, &'s PairShape)> {
     let label = run.files.slaves[slave].nodes()[0];
-    let mut nodes = shape.deck.nodes.iter();
-    let node = nodes.position(|node| node.label == u64::from(label))?;
+    let node = shape
+        .deck
+        .nodes
+        .iter()
+        .position(|node| node.label == u64::from(label))?;
     let has = |pair: &&PairShape| pair.nodes.iter().any(|own| own.node == node);
     Some((node, shape.pairs.iter().find(has)?))
 }
@@ -222,8 +227,10 @@ fn place(run: &CalculixRun, shape: &DeckShape, slave: usize) -> Option<String> {
 fn masters(run: &CalculixRun, attempt: usize, slaves: &BTreeSet<usize>) -> String {
     let iterations = run.files.attempts[attempt].iterations.clone();
     let closed = iterations.filter_map(|k| run.files.closed(k)).flatten();
-    let touched = closed.filter(|closed| slaves.contains(&(closed.slave as usize)));
-    let faces: BTreeSet<u32> = touched.map(|closed| closed.master).collect();
+    let faces: BTreeSet<u32> = closed
+        .filter(|closed| slaves.contains(&(closed.slave as usize)))
+        .map(|closed| closed.master)
+        .collect();
     let names = faces
         .iter()
         .map(|face| super::super::run::face(&run.files.masters[*face as usize]));
@@ -238,17 +245,24 @@ pub fn capped_correction(run: &CalculixRun, shape: Option<&DeckShape>) -> Vec<Ru
     if ended_converged(run) {
         return Vec::new();
     }
-    let attempts = run.files.attempts.iter().enumerate();
-    let capped = attempts.filter_map(|(k, attempt)| {
-        let norms = attempt.iterations.clone().skip(1);
-        let norms = norms.filter_map(|k| run.norms(k));
-        let norms: Vec<_> = norms
-            .take_while(|norms| norms.correction >= CAPPED)
-            .collect();
-        let (from, to) = (norms.first()?.residual, norms.last()?.residual);
-        let grows = attempt.end == End::NotConverged && to > from;
-        grows.then_some((k, norms.len(), from, to))
-    });
+    let capped = run
+        .files
+        .attempts
+        .iter()
+        .enumerate()
+        .filter_map(|(k, attempt)| {
+            let norms = attempt
+                .iterations
+                .clone()
+                .skip(1)
+                .filter_map(|k| run.norms(k));
+            let norms: Vec<_> = norms
+                .take_while(|norms| norms.correction >= CAPPED)
+                .collect();
+            let (from, to) = (norms.first()?.residual, norms.last()?.residual);
+            let grows = attempt.end == End::NotConverged && to > from;
+            grows.then_some((k, norms.len(), from, to))
+        });
     let Some((attempt, count, from, to)) = capped.max_by_key(|capped| capped.1) else {
         return Vec::new();
     };

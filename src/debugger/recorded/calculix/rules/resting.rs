@@ -41,9 +41,14 @@ fn flat<'s>(shape: &DeckShape, pair: &'s PairShape) -> Option<Vec<&'s SlaveGap>>
 
 /// Whether displacements of later steps than the first drive a group until the end of a step.
 fn is_driven(shape: &DeckShape, group: usize, step: usize) -> bool {
-    let later = shape.deck.steps.iter().take(step + 1).skip(1);
-    let mut motions = later.flat_map(|step| &step.motions);
-    motions.any(|value| shape.group(value.node) == Some(group))
+    shape
+        .deck
+        .steps
+        .iter()
+        .take(step + 1)
+        .skip(1)
+        .flat_map(|step| &step.motions)
+        .any(|value| shape.group(value.node) == Some(group))
 }
 
 /// Whether the loads of a step alone press a group onto a single, flat contact, so that friction is known.
@@ -101,8 +106,10 @@ impl Resting<'_> {
                 if shape.pairs_of(group).count() != 1 {
                     continue;
                 }
-                let steps = shape.reached().map(|(step, _)| step);
-                let mut resting = steps.take_while(|step| !is_driven(shape, group, *step));
+                let mut resting = shape
+                    .reached()
+                    .map(|(step, _)| step)
+                    .take_while(|step| !is_driven(shape, group, *step));
                 found.extend(resting.find_map(|step| {
                     let motion = GroupMotion::new(shape, group, step);
                     let rest = Resting {
@@ -212,19 +219,27 @@ pub fn off_the_contact(shape: &DeckShape) -> Vec<RunFinding> {
             return None;
         }
         // Where the resultant meets the contact, against the edge of the contact in each direction.
-        let forces = rest.motion.forces.values();
-        let moment: Vector = forces.map(|f| (f.at - rest.mean).cross(&f.along)).sum();
+        let moment: Vector = rest
+            .motion
+            .forces
+            .values()
+            .map(|f| (f.at - rest.mean).cross(&f.along))
+            .sum();
         let meets = moment.cross(&normal) / pressed;
         let across = normal.cross(&Vector::ith(normal.iamin(), 1.0)).normalize();
-        let directions = (0..DIRECTIONS).map(|k| {
-            let angle = std::f64::consts::TAU * k as f64 / DIRECTIONS as f64;
-            across * angle.cos() + normal.cross(&across) * angle.sin()
-        });
-        let beyond = directions.map(|to| {
-            let edge = rest.at.iter().map(|at| at.dot(&to));
-            let edge = edge.fold(f64::NEG_INFINITY, f64::max);
-            (meets.dot(&to) - edge, edge, to)
-        });
+        let beyond = (0..DIRECTIONS)
+            .map(|k| {
+                let angle = std::f64::consts::TAU * k as f64 / DIRECTIONS as f64;
+                across * angle.cos() + normal.cross(&across) * angle.sin()
+            })
+            .map(|to| {
+                let edge = rest
+                    .at
+                    .iter()
+                    .map(|at| at.dot(&to))
+                    .fold(f64::NEG_INFINITY, f64::max);
+                (meets.dot(&to) - edge, edge, to)
+            });
         let (beyond, edge, to) = beyond.max_by(|a, b| a.0.total_cmp(&b.0))?;
         let axis = normal.cross(&to);
         if beyond <= EDGE * pair.sizes[0] || !rest.is_free(axis, Some(rest.mean + edge * to)) {

@@ -227,13 +227,11 @@ pub fn past_the_edge(shape: &DeckShape) -> Vec<RunFinding> {
             let along = pair.along(moved);
             let limit = 0.1 * pair.sizes[0];
             let past = |part: f64, limit: f64| {
-                let of = pair.nodes.iter().filter(|node| node.beyond <= limit);
-                let of = of.filter(|node| {
+                pair.nodes.iter().filter(|node| node.beyond <= limit).filter(|node| {
                     let at = shape.at(node.node) + part * along;
                     let off = shape.nearest(at, pair);
                     off.is_some_and(|(_, _, beyond)| beyond > limit)
-                });
-                of.count()
+                }).count()
             };
             let lost = past(1.0, 5.0 * limit);
             if along.norm() <= limit || lost == 0 {
@@ -274,17 +272,22 @@ pub fn past_the_edge(shape: &DeckShape) -> Vec<RunFinding> {
 /// The lines of a step's displacements of both bodies of a pair, scaled.
 fn shorter(shape: &DeckShape, step: &Step, pair: &PairShape, part: f64) -> String {
     let mut places = HashSet::new();
-    let driven = step.motions.iter().filter(|value| {
-        let own = shape.group(value.node);
-        let own = own.is_some_and(|own| pair.groups.contains(&own));
-        own && value.value != 0.0 && places.insert((value.place, value.direction))
-    });
-    let lines = driven.filter_map(|value| {
-        let same = step.motions.iter();
-        let same = same.filter(|other| other.place == value.place);
-        let set = shape.set_name(&same.map(|other| other.node).collect());
-        let size = two_digits(0.95 * part * value.value);
-        Some(displaced(&set, value.direction.axis()?, plain(size)))
-    });
+    let lines = step
+        .motions
+        .iter()
+        .filter(|value| {
+            let own = shape.group(value.node);
+            let own = own.is_some_and(|own| pair.groups.contains(&own));
+            own && value.value != 0.0 && places.insert((value.place, value.direction))
+        })
+        .filter_map(|value| {
+            let same = step
+                .motions
+                .iter()
+                .filter(|other| other.place == value.place);
+            let set = shape.set_name(&same.map(|other| other.node).collect());
+            let size = two_digits(0.95 * part * value.value);
+            Some(displaced(&set, value.direction.axis()?, plain(size)))
+        });
     boundary(lines)
 }

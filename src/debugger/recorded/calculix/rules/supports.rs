@@ -45,11 +45,12 @@ pub fn open_at_start(shape: &DeckShape) -> Vec<RunFinding> {
         });
         // Supports that keep the body from following the load also keep it from closing the gap.
         let closes = closing.filter(|(_, to)| moves(to.iamax()));
-        let held = (0..3).filter(|&k| match closes {
-            Some((_, to)) => modes[k] && k != to.iamax(),
-            None => moves(k),
-        });
-        let held = held.map(|k| displaced(&set, k, "0."));
+        let held = (0..3)
+            .filter(|&k| match closes {
+                Some((_, to)) => modes[k] && k != to.iamax(),
+                None => moves(k),
+            })
+            .map(|k| displaced(&set, k, "0."));
         let lines = held.chain(closes.map(|(gap, to)| {
             let along = to.iamax();
             let travel = rounded_up(1.2 * gap / to[along].abs()).copysign(to[along]);
@@ -162,8 +163,11 @@ pub fn held_by_friction(shape: &DeckShape) -> Vec<RunFinding> {
             let free = motion.free(shape);
             let pair = shape.pairs_of(group).next()?;
             // The load along free translations.
-            let along = free.iter().map(|m| m.fixed_rows::<3>(0).into_owned());
-            let all: Matrix3<f64> = along.map(|m| m * m.transpose()).sum();
+            let all: Matrix3<f64> = free
+                .iter()
+                .map(|m| m.fixed_rows::<3>(0).into_owned())
+                .map(|m| m * m.transpose())
+                .sum();
             let force = all * motion.force();
             let is_small = force.norm() <= LOADED * motion.force().norm();
             if rough == 0.0 || is_small || is_pressed_by_loads(shape, group, step) {
@@ -199,8 +203,10 @@ fn first_of_suspects(
     findings: impl Fn(usize) -> Vec<RunFinding>,
 ) -> Vec<RunFinding> {
     let found = shape.suspects().map(|(step, _)| findings(step));
-    let mut found = found.filter(|found| !found.is_empty());
-    found.next().unwrap_or_default()
+    found
+        .filter(|found| !found.is_empty())
+        .next()
+        .unwrap_or_default()
 }
 
 /// Whether the nodes of a pair that touch stick.
@@ -221,8 +227,11 @@ fn touching(pair: &PairShape, step: usize) -> impl Iterator<Item = &SlaveGap> {
 /// Supports that stop free motions, on the loaded nodes, or else on the nodes that displacements drive, or all of the group.
 fn holding(shape: &DeckShape, motion: &GroupMotion, free: &[Motion]) -> String {
     let own = |node: &usize| shape.group(*node) == Some(motion.group);
-    let driven = shape.all_supports().map(|value| value.node);
-    let driven = driven.filter(own).collect();
+    let driven = shape
+        .all_supports()
+        .map(|value| value.node)
+        .filter(own)
+        .collect();
     let all = shape.group_nodes(motion.group).collect();
     let sets: [BTreeSet<usize>; 3] = [motion.loaded(), driven, all];
     let nodes = sets.into_iter().find(|set| !set.is_empty());
