@@ -47,14 +47,10 @@ pub fn read(text: &str) -> Result<(Vec<[f64; 3]>, Vec<Cell>), String> {
     for (end, number) in ends.iter().zip(&types) {
         let kind = KINDS
             .into_iter()
-            .find(|&kind| f64::from(cell_type(kind)) == *number)
-            .ok_or_else(|| format!("cells of VTK's type {number} are not read"))?;
-        let nodes: Vec<usize> = corners
-            .get(start..*end as usize)
-            .unwrap_or_default()
-            .iter()
-            .map(|&node| node as usize)
-            .collect();
+            .find(|&kind| f64::from(cell_type(kind)) == *number);
+        let kind = kind.ok_or_else(|| format!("cells of VTK's type {number} are not read"))?;
+        let nodes = corners.get(start..*end as usize).unwrap_or_default();
+        let nodes: Vec<usize> = nodes.iter().map(|&node| node as usize).collect();
         if nodes.len() != kind.nodes() || nodes.iter().any(|&node| node >= points.len()) {
             return Err(format!(
                 "cell {} has other nodes than its type",
@@ -73,30 +69,28 @@ fn array(text: &str, part: &str, name: &str, wide: bool) -> Result<Vec<f64>, Str
         let rest = text.split_once(from)?.1;
         Some(rest.split_once(to)?.0.to_owned())
     };
-    let part = within(text, &format!("<{part}>"), &format!("</{part}>")).ok_or("it is missing")?;
+    let part = within(text, &format!("<{part}>"), &format!("</{part}>"));
+    let part = part.ok_or("it is missing")?;
     let wanted = format!("Name=\"{name}\"");
-    let found = part
+    let mut arrays = part
         .split("<DataArray")
         .skip(1)
-        .filter_map(|array| array.split_once('>'))
-        .find(|(about, _)| name.is_empty() || about.contains(&wanted));
+        .filter_map(|array| array.split_once('>'));
+    let found = arrays.find(|(about, _)| name.is_empty() || about.contains(&wanted));
     let (about, content) = found.ok_or("it is missing")?;
     let content = content.split('<').next().unwrap_or_default();
     let of = |key: &str| within(about, &format!("{key}=\""), "\"").unwrap_or_default();
     if of("format") == "ascii" {
         let words = content.split_ascii_whitespace();
-        return words
-            .map(|word| word.parse().map_err(|_| format!("{word:?} is no number")))
-            .collect();
+        let numbers = words.map(|word| word.parse().map_err(|_| format!("{word:?} is no number")));
+        return numbers.collect();
     }
     if of("format") != "binary" {
         return Err("only the formats ascii and binary are read".into());
     }
-    let bytes = BASE64_STANDARD
-        .decode(content.trim())
-        .map_err(|error| error.to_string())?
-        .get(if wide { 8 } else { 4 }..)
-        .unwrap_or_default();
+    let bytes = BASE64_STANDARD.decode(content.trim());
+    let bytes = bytes.map_err(|error| error.to_string())?;
+    let bytes = bytes.get(if wide { 8 } else { 4 }..).unwrap_or_default();
     /// The numbers of one type.
     macro_rules! numbers {
         ($type:ty) => {

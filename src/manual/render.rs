@@ -42,7 +42,8 @@ impl Line {
 
     /// The text for output without styles: a heading is underlined by a second line.
     pub fn plain(&self) -> String {
-        let text = self.text().trim_end();
+        let text = self.text();
+        let text = text.trim_end();
         if self.is_heading() {
             format!("{text}\n{}", "─".repeat(text.width()))
         } else {
@@ -295,12 +296,11 @@ fn table(rows: &[&str], width: usize) -> Vec<Line> {
         .collect();
     let columns = cells.iter().map(Vec::len).max().unwrap_or(0);
     let measure = |column: usize, of: fn(&[(Style, String)]) -> usize| {
-        cells
+        let wide = cells
             .iter()
             .filter_map(|row| row.get(column))
-            .map(|cell| of(cell))
-            .max()
-            .unwrap_or(0)
+            .map(|cell| of(cell));
+        wide.max().unwrap_or(0)
     };
     let wanted: Vec<usize> = (0..columns)
         .map(|column| measure(column, whole_width))
@@ -356,9 +356,9 @@ fn table(rows: &[&str], width: usize) -> Vec<Line> {
 
 /// The cells of a row; `\|` is a literal bar.
 fn split(row: &str) -> Vec<Vec<(Style, String)>> {
-    row.replace("\\|", "\u{0}")
-        .trim_matches('|')
-        .split('|')
+    let row = row.replace("\\|", "\u{0}");
+    let row = row.trim_matches('|');
+    row.split('|')
         .map(|cell| inline(cell.trim().replace('\u{0}', "|").as_str()))
         .collect()
 }

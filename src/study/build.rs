@@ -23,6 +23,7 @@ fn main() {
 fn described() -> Option<String> {
     let arguments = ["describe", "--always", "--dirty"];
     let output = Command::new("git").args(arguments).output().ok()?;
-    let text = String::from_utf8(output.stdout).ok()?.trim();
+    let text = String::from_utf8(output.stdout).ok()?;
+    let text = text.trim();
     (output.status.success() && !text.is_empty()).then(|| text.to_owned())
 }

@@ -168,8 +168,7 @@ impl Keymap {
             let (name, _) = self
                 .changed
                 .iter()
-                .filter(|(_, keys)| keys.iter().any(|own| own == key))
-                .next()?;
+                .find(|(_, keys)| keys.iter().any(|own| own == key))?;
             ACTIONS.iter().find(|entry| entry.name == *name)
         };
         by_key(key).filter(|entry| !changed(entry)).or_else(moved)

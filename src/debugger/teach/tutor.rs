@@ -259,8 +259,7 @@ impl Tutor {
             .iter()
             .map(|lesson| lesson.name)
             .skip_while(|name| *name != self.lesson.name)
-            .skip(1)
-            .next()
+            .nth(1)
             .filter(|_| self.step().is_none())
     }
 

@@ -226,8 +226,8 @@ pub fn whole(
         "The frozen interface problem of a major iteration: the bodies reduced to their contact nodes.".to_owned(),
         origin.words(),
     ];
-    let gone: Vec<&str> = (0..problem.nodes.len())
-        .filter(|place| !here.contains(place))
+    let gone = (0..problem.nodes.len()).filter(|place| !here.contains(place));
+    let gone: Vec<&str> = gone
         .map(|place| names::slave(model, problem.nodes[place].slave))
         .collect();
     if !gone.is_empty() {
@@ -444,11 +444,11 @@ fn stiffness(problem: &InterfaceProblem) -> Option<Parts> {
     let (k, start, n) = (relation.stiffness, &relation.start, relation.start.len());
     let mut matrix: Vec<f64> = relation.response.iter().map(|r| r / k).collect();
     (0..n).for_each(|i| matrix[i * n + i] += 1.0);
-    let (c, k_columns) = solved(
+    let solved = solved(
         &matrix,
         start.iter().chain(&relation.response).copied().collect(),
-    )?
-    .split_at(n);
+    )?;
+    let (c, k_columns) = solved.split_at(n);
     // (1 + R/k)⁻¹ = 1 + K/k; without springs nothing has to be removed.
     let largest = max_abs(k_columns) / k;
     if largest > SINGULAR {
@@ -479,7 +479,8 @@ fn compliance(problem: &InterfaceProblem) -> Option<Parts> {
     let (k, start, n) = (relation.stiffness, &relation.start, relation.start.len());
     let mut right = start.clone();
     right.extend((0..n * n).map(|at| if at / n == at % n { 1.0 } else { 0.0 }));
-    let (still, inverse) = solved(&relation.response, right)?.split_at(n);
+    let solved = solved(&relation.response, right)?;
+    let (still, inverse) = solved.split_at(n);
     let largest = max_abs(inverse) * problem.spring;
     if largest > SINGULAR {
         return None;
@@ -550,10 +551,8 @@ fn shortened(title: &str) -> String {
 
 /// A comment in lines of [`WIDTH`], indented after the first.
 fn wrapped(text: &str) -> impl Iterator<Item = String> {
-    shown::wrap(text, WIDTH - 2)
-        .into_iter()
-        .enumerate()
-        .map(|(k, line)| if k == 0 { line } else { format!("  {line}") })
+    let lines = shown::wrap(text, WIDTH - 2).into_iter().enumerate();
+    lines.map(|(k, line)| if k == 0 { line } else { format!("  {line}") })
 }
 
 /// The solver of an exported file at its start.
@@ -570,11 +569,11 @@ pub fn compared(problem: &InterfaceProblem, text: &str) -> Result<f64, FileMisma
     let mut stepper = stepper(text)?;
     // For bonds, the file contains only the contact points, not the nodes behind them.
     let mut touching = problem.clone();
-    touching
+    let kinematics = touching
         .nodes
         .iter_mut()
-        .filter_map(|node| node.kinematics.as_mut())
-        .for_each(|over| over.bond = Bond::Hard);
+        .filter_map(|node| node.kinematics.as_mut());
+    kinematics.for_each(|over| over.bond = Bond::Hard);
     let mut trials = Trials::new(&touching).ok_or(FileMismatch::Memory)?;
     let mut nodes = problem.states();
     let (mut worst, mut minor) = (0.0_f64, 0);

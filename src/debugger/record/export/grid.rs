@@ -163,17 +163,16 @@ fn deformations(model: &Model, state: &State, grid: &mut Grid) {
         return;
     }
     let mut numbers = [0, 1].map(|_| vec![f64::NAN; grid.cells.len()]);
-    let found = deformation::by_element(model, &state.u).iter().flatten();
+    let found = deformation::by_element(model, &state.u);
+    let found = found.iter().flatten();
     let of_line = |cell: &Cell| {
         matches!(
             cell.kind,
             CellKind::Line2 | CellKind::Line3 | CellKind::Point
         )
     };
-    for (place, measures) in (0..grid.cells.len())
-        .filter(|&place| !of_line(&grid.cells[place]))
-        .zip(found)
-    {
+    let places = (0..grid.cells.len()).filter(|&place| !of_line(&grid.cells[place]));
+    for (place, measures) in places.zip(found) {
         for (list, value) in numbers.iter_mut().zip(measures) {
             list[place] = *value;
         }
@@ -208,13 +207,11 @@ fn lines(nodes: &[usize]) -> Vec<Cell> {
             nodes: vec![one, other, middle],
         }];
     }
-    nodes
-        .windows(2)
-        .map(|pair| Cell {
-            kind: CellKind::Line2,
-            nodes: pair.to_vec(),
-        })
-        .collect()
+    let pairs = nodes.windows(2).map(|pair| Cell {
+        kind: CellKind::Line2,
+        nodes: pair.to_vec(),
+    });
+    pairs.collect()
 }
 
 fn motion(model: &Model, state: &State, grid: &mut Grid) {
@@ -322,11 +319,8 @@ fn contacts(model: &Model, state: &State, event: Option<&Event>, grid: &mut Grid
         }
         stresses
     });
-    for (name, values) in names
-        .into_iter()
-        .chain(["pressure", "shear"])
-        .zip(numbers.into_iter().chain(by_area))
-    {
+    let names = names.into_iter().chain(["pressure", "shear"]);
+    for (name, values) in names.zip(numbers.into_iter().chain(by_area)) {
         grid.on_points
             .push(array(name, &[], Values::Numbers(values)));
     }

@@ -202,11 +202,8 @@ fn first_of_suspects(
     shape: &DeckShape,
     findings: impl Fn(usize) -> Vec<RunFinding>,
 ) -> Vec<RunFinding> {
-    let found = shape.suspects().map(|(step, _)| findings(step));
-    found
-        .filter(|found| !found.is_empty())
-        .next()
-        .unwrap_or_default()
+    let mut found = shape.suspects().map(|(step, _)| findings(step));
+    found.find(|found| !found.is_empty()).unwrap_or_default()
 }
 
 /// Whether the nodes of a pair that touch stick.
