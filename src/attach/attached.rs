@@ -290,10 +290,11 @@ impl Attached {
 
     /// Sends interventions to the solver.
     fn change(&mut self, asked: &[Intervention]) -> Result<(), Fault> {
-        let requests = asked
+        for request in asked
             .iter()
-            .flat_map(|one| requests(one, &self.ids, &self.offers));
-        for request in requests.collect::<Vec<_>>() {
+            .flat_map(|one| requests(one, &self.ids, &self.offers))
+            .collect::<Vec<_>>()
+        {
             self.order(&request)?;
         }
         Ok(())
@@ -309,12 +310,13 @@ impl Attached {
                     .places
                     .get(from)
                     .filter(|_| self.hello.abilities.partial);
-                let contacts = before.map(|before| state.complete(&self.ids, &before.contacts));
-                let contacts = contacts.unwrap_or_else(|| Ok(Vec::new()));
-                let contacts = contacts.map_err(|why| Fault::Unfit {
-                    message: "state",
-                    why,
-                })?;
+                let contacts = before
+                    .map(|before| state.complete(&self.ids, &before.contacts))
+                    .unwrap_or_else(|| Ok(Vec::new()))
+                    .map_err(|why| Fault::Unfit {
+                        message: "state",
+                        why,
+                    })?;
                 let state = *state;
                 Ok(ReportedState { state, contacts })
             }

@@ -74,8 +74,10 @@ impl Channel {
     pub fn is_local(&self) -> bool {
         match self {
             Channel::Tcp { address, .. } => {
-                let host = address.rsplit_once(':').map_or("", |(host, _)| host);
-                let host = host.trim_matches(['[', ']']);
+                let host = address
+                    .rsplit_once(':')
+                    .map_or("", |(host, _)| host)
+                    .trim_matches(['[', ']']);
                 let ip = host.parse::<std::net::IpAddr>();
                 host == "localhost" || ip.is_ok_and(|ip| ip.is_loopback())
             }
@@ -85,8 +87,9 @@ impl Channel {
 
     /// What a solver that connects needs to know, in words.
     pub fn invitation(&self) -> String {
-        let variables = self.environment().into_iter();
-        let set: String = variables
+        let set: String = self
+            .environment()
+            .into_iter()
             .map(|(name, value)| format!(" {name}={value}"))
             .collect();
         format!("waiting for a solver; start it with{set}")
@@ -182,9 +185,10 @@ fn introduced(mut stream: &TcpStream, token: &str) -> io::Result<()> {
         .iter()
         .zip(token.as_bytes())
         .fold(0, |sum, (a, b)| sum | (a ^ b));
-    match line.len() == token.len() && differs == 0 {
-        true => Ok(()),
-        false => Err(io::ErrorKind::PermissionDenied.into()),
+    if line.len() == token.len() && differs == 0 {
+        Ok(())
+    } else {
+        Err(io::ErrorKind::PermissionDenied.into())
     }
 }
 

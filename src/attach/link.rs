@@ -59,9 +59,10 @@ impl Start {
 
     /// The command as typed, or the address of the channel.
     pub fn typed(&self) -> String {
-        match self.command.is_empty() {
-            true => self.channel.to_string(),
-            false => self.command.join(" "),
+        if self.command.is_empty() {
+            self.channel.to_string()
+        } else {
+            self.command.join(" ")
         }
     }
 }
@@ -145,8 +146,10 @@ impl Link {
         let input = link.input.take().map(Input::prepared).transpose();
         link.input = input.map_err(failed)?;
         let reader = link.input.as_ref().map(Input::reader).transpose();
-        let from_socket = reader.map_err(failed)?.flatten();
-        let messages = from_socket.or_else(|| streams[0].take());
+        let messages = reader
+            .map_err(failed)?
+            .flatten()
+            .or_else(|| streams[0].take());
         if let Some(stream) = messages {
             thread::spawn(move || read(stream, &lines));
         }
@@ -321,11 +324,11 @@ impl Link {
                 .trim_end()
                 .to_owned();
         }
-        match text.trim_start().starts_with('{') {
-            true => self.log.exchanged(Side::Answered, &text),
-            false => self
-                .log
-                .exchanged(Side::Noted, &format!("not a message: {text}")),
+        if text.trim_start().starts_with('{') {
+            self.log.exchanged(Side::Answered, &text)
+        } else {
+            self.log
+                .exchanged(Side::Noted, &format!("not a message: {text}"))
         }
         answer.map_err(|broken| {
             let letters = text.trim_start();
@@ -340,16 +343,17 @@ impl Link {
             // In a long line the error is near the column.
             let from = broken.at.map_or(0, |(_, column)| column.saturating_sub(40));
             let asked = waiting.asked.clone();
-            match letters.starts_with('{') {
-                true => Fault::Misformed {
+            if letters.starts_with('{') {
+                Fault::Misformed {
                     asked,
                     why,
                     line: text.chars().skip(from).take(SHOWN).collect(),
-                },
-                false => Fault::Junk {
+                }
+            } else {
+                Fault::Junk {
                     why,
                     line: text.chars().take(SHOWN).collect(),
-                },
+                }
             }
         })
     }

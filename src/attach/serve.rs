@@ -159,10 +159,13 @@ impl<'a> Server<'a> {
         let controls = &self.stepper.state().controls;
         let now = controls.friction.first().copied().unwrap_or_default();
         match name {
-            INCREMENT | FRICTION | COHESION => match value.is_number() {
-                true => Ok(orders::set(name, value, now)),
-                false => Err(format!("{name} must be a number, not {value}")),
-            },
+            INCREMENT | FRICTION | COHESION => {
+                if value.is_number() {
+                    Ok(orders::set(name, value, now))
+                } else {
+                    Err(format!("{name} must be a number, not {value}"))
+                }
+            }
             path if path.starts_with("settings.") => {
                 let mut spec = self.scene.spec.clone();
                 spec.settings = controls.settings;
@@ -241,10 +244,12 @@ fn parameters(scene: &Scene) -> Vec<ParameterMessage> {
     let settings = paths::list(&scene.spec).into_iter();
     let settings = settings.filter(|listed| listed.path.starts_with("settings."));
     all.extend(settings.map(|listed| {
-        let choices = words.iter().find(|(path, _)| *path == listed.path);
-        let choices: Vec<String> = choices.map_or_else(Vec::new, |(_, words)| {
-            words.iter().map(|word| (*word).to_owned()).collect()
-        });
+        let choices: Vec<String> = words
+            .iter()
+            .find(|(path, _)| *path == listed.path)
+            .map_or_else(Vec::new, |(_, words)| {
+                words.iter().map(|word| (*word).to_owned()).collect()
+            });
         let (kind, value) = match listed.value.parse::<f64>() {
             _ if !choices.is_empty() => (ParameterKind::Choice, Value::from(listed.value)),
             Ok(_) if listed.kind.contains("whole") => {

@@ -49,8 +49,11 @@ fn features() -> String {
         ("fclib", cfg!(feature = "fclib")),
     ];
     let with = |wanted: bool| {
-        let names = all.iter().filter(|(_, has)| *has == wanted);
-        names.map(|(name, _)| *name).collect::<Vec<_>>().join(", ")
+        all.iter()
+            .filter(|(_, has)| *has == wanted)
+            .map(|(name, _)| *name)
+            .collect::<Vec<_>>()
+            .join(", ")
     };
     match (with(true), with(false)) {
         (all, none) if none.is_empty() => all,
@@ -71,13 +74,15 @@ fn target() -> String {
         (_, _, true) => "glibc",
         _ => "other libc",
     };
-    let linked = match cfg!(target_feature = "crt-static") {
-        true => ", statically linked",
-        false => "",
+    let linked = if cfg!(target_feature = "crt-static") {
+        ", statically linked"
+    } else {
+        ""
     };
-    let kind = match cfg!(debug_assertions) {
-        true => "; debug build",
-        false => "",
+    let kind = if cfg!(debug_assertions) {
+        "; debug build"
+    } else {
+        ""
     };
     format!(
         "{}/{}, {libc}{linked}{kind}",
@@ -92,8 +97,9 @@ fn kernel_and_libc() -> String {
         .arg("GNU_LIBC_VERSION")
         .output()
         .ok();
-    let libc = asked.filter(|asked| asked.status.success());
-    let libc = libc.map(|asked| String::from_utf8_lossy(&asked.stdout).trim().to_owned());
+    let libc = asked
+        .filter(|asked| asked.status.success())
+        .map(|asked| String::from_utf8_lossy(&asked.stdout).trim().to_owned());
     let libc = libc.filter(|libc| !libc.is_empty());
     format!(
         "{}, {}",
@@ -145,14 +151,17 @@ fn terminal() -> String {
 }
 
 fn variables(names: &[&str]) -> String {
-    let words = names.iter().filter_map(|name| {
-        let value = env::var_os(name)?;
-        Some(format!("{name}={}", value.to_string_lossy()))
-    });
-    let words: Vec<String> = words.collect();
-    match words.is_empty() {
-        true => format!("none of these is set: {}", names.join(", ")),
-        false => words.join(" "),
+    let words: Vec<String> = names
+        .iter()
+        .filter_map(|name| {
+            let value = env::var_os(name)?;
+            Some(format!("{name}={}", value.to_string_lossy()))
+        })
+        .collect();
+    if words.is_empty() {
+        format!("none of these is set: {}", names.join(", "))
+    } else {
+        words.join(" ")
     }
 }
 
@@ -172,9 +181,10 @@ fn words(answers: &Answers) -> String {
         Some(false) => "no",
         None => "not reported",
     };
-    let clipboard = match answers.clipboard() {
-        true => "yes",
-        false => "not reported",
+    let clipboard = if answers.clipboard() {
+        "yes"
+    } else {
+        "not reported"
     };
     let widths = match answers.other_widths() {
         None => "not reported".into(),

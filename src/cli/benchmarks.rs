@@ -21,8 +21,7 @@ pub fn main(list: &Benchmarks, out: &OutputArgs) -> Result<Exit, Error> {
         stop: &|| interrupt.has_arrived(),
         done: &|_| {},
     };
-    let compared = list.run(out.jobs(), &watch);
-    let compared = compared.map_err(Error::usage)?;
+    let compared = list.run(out.jobs(), &watch).map_err(Error::usage)?;
     outputs.write_table(&table(list, &compared))?;
     if !out.quiet {
         report_table(list, &compared);

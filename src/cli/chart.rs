@@ -68,11 +68,10 @@ pub struct Args {
 }
 
 fn target(text: &str) -> Result<f64, NoValue> {
-    let target = text
-        .parse::<f64>()
+    text.parse::<f64>()
         .ok()
-        .filter(|t| *t > 0.0 && t.is_finite());
-    target.ok_or_else(|| NoValue::new("expected a positive number, such as 1e-3"))
+        .filter(|t| *t > 0.0 && t.is_finite())
+        .ok_or_else(|| NoValue::new("expected a positive number, such as 1e-3"))
 }
 
 fn cost(text: &str) -> Result<Cost, NoValue> {
@@ -81,8 +80,12 @@ fn cost(text: &str) -> Result<Cost, NoValue> {
 }
 
 pub fn main(args: &Args) -> Result<Exit, Error> {
-    let peers = args.peers.iter().map(|file| table(file, args));
-    let peers = peers.collect::<Result<Vec<_>, _>>()?.concat();
+    let peers = args
+        .peers
+        .iter()
+        .map(|file| table(file, args))
+        .collect::<Result<Vec<_>, _>>()?
+        .concat();
     if let Some(file) = &args.from {
         let charts = with_peers(table(file, args)?, &peers)?;
         let outputs = Outputs::open(&args.sweep.out)?;

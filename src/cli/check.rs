@@ -74,17 +74,16 @@ fn warn(warnings: &[String]) {
 /// What the rules find in a deck, with the cures.
 fn causes(deck: &Deck) -> Vec<String> {
     let findings = rules::examine(Some(&DeckShape::new(deck)), None);
-    let words = findings
+    findings
         .iter()
-        .map(|found| format!("{}. Cure: {}", found.cause, found.advice()));
-    words.collect()
+        .map(|found| format!("{}. Cure: {}", found.cause, found.advice()))
+        .collect()
 }
 
 /// Checks a three-dimensional deck, which only CalculiX solves.
 fn check_solid(args: &Args, deck: &Deck) -> Result<Exit, Error> {
     let json = args.json.open(args.force)?;
-    let remarks = deck.remarks.iter();
-    let notes = remarks.map(|remark| {
+    let notes = deck.remarks.iter().map(|remark| {
         let (file, line) = (deck.file(remark.place), remark.place.line);
         format!("{file}:{line}: {}", remark.text)
     });

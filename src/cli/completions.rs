@@ -181,16 +181,19 @@ const FREE: &[&str] = &[
 type Named = (&'static str, String);
 
 fn scenes() -> Vec<Named> {
-    let list = builtin::list().iter();
-    list.map(|scene| (scene.name, builtin::title(scene)))
+    builtin::list()
+        .iter()
+        .map(|scene| (scene.name, builtin::title(scene)))
         .collect()
 }
 
 /// The main screens of the debugger, and scenes.
 fn screens() -> Vec<Named> {
-    let screens = super::front::MAIN_SCREENS.iter();
-    let named = screens.map(|screen| (screen.name, screen.keys.to_owned()));
-    named.chain(scenes()).collect()
+    super::front::MAIN_SCREENS
+        .iter()
+        .map(|screen| (screen.name, screen.keys.to_owned()))
+        .chain(scenes())
+        .collect()
 }
 
 fn with_studies() -> Vec<Named> {
@@ -202,8 +205,10 @@ fn with_studies() -> Vec<Named> {
 }
 
 fn lessons() -> Vec<Named> {
-    let list = teach::list().iter().chain(teach::lesson::sheets());
-    list.map(|lesson| (lesson.name, teach::lesson::title(lesson)))
+    teach::list()
+        .iter()
+        .chain(teach::lesson::sheets())
+        .map(|lesson| (lesson.name, teach::lesson::title(lesson)))
         .collect()
 }
 
@@ -214,8 +219,9 @@ fn shown() -> Vec<Named> {
 
 /// Arguments of `help`.
 fn topics() -> Vec<Named> {
-    let pages = manual::PAGES.iter();
-    let pages = pages.map(|page| (page.topic, page.about.to_owned()));
+    let pages = manual::PAGES
+        .iter()
+        .map(|page| (page.topic, page.about.to_owned()));
     let names = super::groups::names().map(|name| (name, String::new()));
     pages.chain(names).collect()
 }
@@ -251,16 +257,19 @@ fn settings(begun: &OsStr) -> Vec<CompletionCandidate> {
     let listed = of_scene(&words).unwrap_or_else(of_any);
     let begun = begun.to_string_lossy();
     let found: Vec<String> = match begun.split_once('=') {
-        None => {
-            let paths = listed.iter().map(|own| format!("{}=", own.path));
-            paths.filter(|path| path.starts_with(&*begun)).collect()
-        }
+        None => listed
+            .iter()
+            .map(|own| format!("{}=", own.path))
+            .filter(|path| path.starts_with(&*begun))
+            .collect(),
         Some((path, value)) => {
             let before = value.rfind(',').map_or("", |at| &value[..=at]);
             let own = listed.iter().find(|own| own.path == path);
-            let values = own.map_or(&[][..], |own| own.words).iter();
-            let values = values.map(|word| format!("{path}={before}{word}"));
-            values.filter(|value| value.starts_with(&*begun)).collect()
+            own.map_or(&[][..], |own| own.words)
+                .iter()
+                .map(|word| format!("{path}={before}{word}"))
+                .filter(|value| value.starts_with(&*begun))
+                .collect()
         }
     };
     found.into_iter().map(CompletionCandidate::new).collect()
@@ -292,8 +301,8 @@ fn of_scene(words: &[OsString]) -> Option<Vec<SettablePath>> {
 
 /// The paths that all scenes have.
 fn of_any() -> Vec<SettablePath> {
-    let listed = paths::of_settings().into_iter();
-    listed
+    paths::of_settings()
+        .into_iter()
         .map(|(path, words)| SettablePath { path, words })
         .collect()
 }

@@ -82,10 +82,11 @@ pub const DEBUGGER: &str = "the debugger";
 
 /// Fails if there is no terminal; `instead` names a subcommand that needs none.
 pub fn needs_terminal(what: &str, instead: &str) -> Result<(), Error> {
-    match std::io::stdin().is_terminal() && std::io::stdout().is_terminal() {
-        true => Ok(()),
-        false => Err(usage!(
+    if std::io::stdin().is_terminal() && std::io::stdout().is_terminal() {
+        Ok(())
+    } else {
+        Err(usage!(
             "{what} needs a terminal, but stdin or stdout is not one; `stickslip {instead}"
-        )),
+        ))
     }
 }

@@ -210,18 +210,18 @@ fn reported(args: &Args, interrupt: &Interrupt) -> Result<Exit, Error> {
 
 /// Reads `1920x1080`.
 pub fn size(text: &str) -> Result<(u16, u16), String> {
-    let sides = text.split_once('x');
-    let sides = sides.and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
+    let sides = text
+        .split_once('x')
+        .and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
     sides.ok_or_else(|| "a size has the form 120x40".into())
 }
 
 /// Reads the height of a text.
 fn font(text: &str) -> Result<f64, String> {
-    let size = text
-        .parse()
+    text.parse()
         .ok()
-        .filter(|size: &f64| (4.0..=200.0).contains(size));
-    size.ok_or_else(|| "a font has 4 to 200 pixels".into())
+        .filter(|size: &f64| (4.0..=200.0).contains(size))
+        .ok_or_else(|| "a font has 4 to 200 pixels".into())
 }
 
 /// What a picture of a model contains.
@@ -250,8 +250,9 @@ fn picture(args: &Args, model: &Model) -> Result<PictureRequest, Error> {
 /// The kind of the input: journal, snapshot, or otherwise a scene.
 fn input_kind(input: &str) -> FileKind {
     let found = FileKind::from_file(Path::new(input));
-    let ours = found.filter(|kind| matches!(kind, FileKind::Journal | FileKind::Snapshot));
-    ours.unwrap_or(FileKind::Scene)
+    found
+        .filter(|kind| matches!(kind, FileKind::Journal | FileKind::Snapshot))
+        .unwrap_or(FileKind::Scene)
 }
 
 /// A scene that imports a mesh.
@@ -265,8 +266,11 @@ fn around_mesh(args: &Args, kind: &ExportKind) -> Result<Vec<u8>, Error> {
     }
     scene_only(args, "a mesh has no states or values")?;
     let folder = |path: &Path| {
-        let folder = path.parent().filter(|folder| *folder != Path::new(""));
-        folder.unwrap_or(Path::new(".")).canonicalize().ok()
+        path.parent()
+            .filter(|folder| *folder != Path::new(""))
+            .unwrap_or(Path::new("."))
+            .canonicalize()
+            .ok()
     };
     let mesh = Path::new(file);
     let below = folder(mesh).zip(folder(&args.output)).zip(mesh.file_name());
@@ -375,9 +379,10 @@ fn state(
     let mut seen = RunHistory::at_start(&mut stepper, &parts);
     // The scene file itself needs no solve.
     let solves = kind.extension != "ron" || args.frozen;
-    let ended = match solves {
-        true => drive(&course, args.at, &mut stepper, &mut seen, interrupt)?,
-        false => RunStop::There(String::new()),
+    let ended = if solves {
+        drive(&course, args.at, &mut stepper, &mut seen, interrupt)?
+    } else {
+        RunStop::There(String::new())
     };
     let ended = match ended {
         RunStop::There(ended) => ended,
@@ -405,8 +410,10 @@ fn state(
 fn origin(course: &Course, at: Position, state: &State) -> Origin {
     let mut origin = Origin::new(&course.scene, at, state.major.target);
     let model = &course.scene.model;
-    let words = course.applied.iter();
-    let words = words.map(|a| report::intervention(model, &a.intervention));
+    let words = course
+        .applied
+        .iter()
+        .map(|a| report::intervention(model, &a.intervention));
     origin.changes.extend(words);
     origin
 }

@@ -59,8 +59,11 @@ impl Grids {
             path: folder.to_owned(),
             source,
         })?;
-        let stem = Path::new(scene).file_stem().unwrap_or_default();
-        let stem = stem.to_string_lossy().into_owned();
+        let stem = Path::new(scene)
+            .file_stem()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned();
         let collection = Output::create(&folder.join(format!("{stem}.pvd")), overwrite)?;
         Ok(Grids {
             folder: folder.to_owned(),
@@ -87,9 +90,10 @@ impl Grids {
     /// If it cannot be written.
     pub fn see(&mut self, stepper: &Stepper) -> Result<(), Error> {
         let event = stepper.event();
-        match self.each.wants(event) {
-            true => self.write(stepper, stepper.state(), Some(event), event.load_factor),
-            false => Ok(()),
+        if self.each.wants(event) {
+            self.write(stepper, stepper.state(), Some(event), event.load_factor)
+        } else {
+            Ok(())
         }
     }
 
@@ -114,8 +118,10 @@ impl Grids {
     /// If it cannot be written.
     pub fn finish(self) -> Result<String, Error> {
         let rises = self.written.windows(2).all(|pair| pair[0].0 < pair[1].0);
-        let times = self.written.into_iter().enumerate();
-        let files: Vec<(f64, String)> = times
+        let files: Vec<(f64, String)> = self
+            .written
+            .into_iter()
+            .enumerate()
             .map(|(number, (load, name))| (if rises { load } else { number as f64 }, name))
             .collect();
         let mut output = self.collection;

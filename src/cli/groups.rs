@@ -40,8 +40,9 @@ pub fn grouped(command: clap::Command) -> clap::Command {
         for name in names {
             let about = command
                 .find_subcommand(name)
-                .and_then(|own| own.get_about());
-            let about = about.map(ToString::to_string).unwrap_or_default();
+                .and_then(|own| own.get_about())
+                .map(ToString::to_string)
+                .unwrap_or_default();
             let mut lines = wrap(&about, WIDTH - width - 4).into_iter();
             let first = lines.next().unwrap_or_default();
             text += &format!("  {name:<width$}  {first}\n");
@@ -95,8 +96,10 @@ pub fn unknown(word: &str) -> Option<String> {
         did_you_mean(word, names()),
         did_you_mean(word, scenes),
     ];
-    let near = near.into_iter().find(|near| !near.is_empty());
-    let near = near.unwrap_or_default();
+    let near = near
+        .into_iter()
+        .find(|near| !near.is_empty())
+        .unwrap_or_default();
     let word = stickslip_scene::format::error::quoted(word);
     Some(format!(
         "{word} is not a subcommand, a file or a built-in scene{near} (see `stickslip --help`, `stickslip list`)"

@@ -97,8 +97,9 @@ pub fn commands(mut program: clap::Command) -> String {
 /// An argument as it is typed.
 fn written(argument: &clap::Arg) -> String {
     let takes = argument.get_action().takes_values();
-    let values = argument.get_value_names().unwrap_or_default();
-    let values: Vec<&str> = values
+    let values: Vec<&str> = argument
+        .get_value_names()
+        .unwrap_or_default()
         .iter()
         .filter(|_| takes)
         .map(|name| name.as_str())
@@ -114,17 +115,21 @@ fn written(argument: &clap::Arg) -> String {
 /// Shows a page, through a pager on a terminal, otherwise as plain text.
 fn show(page: &Page) -> Result<Exit, Error> {
     let terminal = std::io::stdout().is_terminal();
-    let width = match terminal {
-        true => terminal::size().map_or(render::WIDTH, |(columns, _)| {
+    let width = if terminal {
+        terminal::size().map_or(render::WIDTH, |(columns, _)| {
             usize::from(columns).clamp(40, 100)
-        }),
-        false => render::WIDTH,
+        })
+    } else {
+        render::WIDTH
     };
     let styled = terminal && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty());
     let lines = render::render(page.text(), width);
-    let line = |line: &render::Line| match styled {
-        true => line.ansi() + "\n",
-        false => line.plain() + "\n",
+    let line = |line: &render::Line| {
+        if styled {
+            line.ansi() + "\n"
+        } else {
+            line.plain() + "\n"
+        }
     };
     let text: String = lines.iter().map(line).collect();
     if terminal && paged(&text) {

@@ -55,8 +55,7 @@ pub fn unfinished(mut sink: Sink, record: &impl Serialize) -> Result<Option<Outp
 
 /// A record as text. Numbers have as many digits as needed to read back the same bits; those that are not finite are null.
 fn text(record: &impl Serialize) -> Result<String, Error> {
-    let text = serde_json::to_string_pretty(record);
-    let text = text.map_err(|error| usage!("--json: {error}"))?;
+    let text = serde_json::to_string_pretty(record).map_err(|error| usage!("--json: {error}"))?;
     let mut safe = String::with_capacity(text.len() + 1);
     let mut units = [0; 2];
     for letter in text.chars() {

@@ -60,9 +60,10 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         None => Lesson::open(name)?,
     };
     if args.check || args.sheet {
-        let text = match args.check {
-            true => check(lesson)?,
-            false => sheet(lesson)?,
+        let text = if args.check {
+            check(lesson)?
+        } else {
+            sheet(lesson)?
         };
         say(&text)?;
         return Ok(Exit::Good);
@@ -94,9 +95,12 @@ fn write_hand_in(to: &Path, force: bool) -> Result<Exit, Error> {
 
 /// Prints the table of a class, lessons in teaching order. Files that cannot be read are named and left out.
 fn collect(files: &[PathBuf]) -> Result<Exit, Error> {
-    let read = |file: &PathBuf| match file.exists() {
-        true => Progress::read(file).map_err(Error::usage),
-        false => Err(usage!("{}: no such file", file.display())),
+    let read = |file: &PathBuf| {
+        if file.exists() {
+            Progress::read(file).map_err(Error::usage)
+        } else {
+            Err(usage!("{}: no such file", file.display()))
+        }
     };
     let (class, unread): (Vec<_>, Vec<_>) = files.iter().map(read).partition(Result::is_ok);
     for error in unread.iter().filter_map(|result| result.as_ref().err()) {
@@ -128,8 +132,11 @@ fn list() -> Result<String, Error> {
             .of(&lesson.name)
             .map_or(String::new(), |r| r.words())
     };
-    let names = lessons.iter().map(|lesson| lesson.name.width());
-    let width = names.max().unwrap_or(0);
+    let width = lessons
+        .iter()
+        .map(|lesson| lesson.name.width())
+        .max()
+        .unwrap_or(0);
     let column = lessons.iter().map(|lesson| done(lesson).width()).max();
     let line = |(index, lesson): (usize, &Lesson)| {
         let mut line = format!("{:>2}  {}  ", index + 1, shown::padded(&lesson.name, width));
@@ -183,13 +190,15 @@ fn sheet(lesson: Lesson) -> Result<String, Error> {
 /// A text after an empty line, with its equations on lines of their own.
 fn printed(mark: &str, text: &str) -> String {
     let indent = " ".repeat(mark.width());
-    let lines = paragraphs(text).into_iter().enumerate();
-    let lines = lines.map(|(k, paragraph)| match paragraph {
-        Paragraph::Equation(equation) => indented(&format!("{indent}    "), &equation),
-        Paragraph::Text(text) if k == 0 => indented(mark, &text),
-        Paragraph::Text(text) => indented(&indent, &text),
-        _ => String::new(),
-    });
+    let lines = paragraphs(text)
+        .into_iter()
+        .enumerate()
+        .map(|(k, paragraph)| match paragraph {
+            Paragraph::Equation(equation) => indented(&format!("{indent}    "), &equation),
+            Paragraph::Text(text) if k == 0 => indented(mark, &text),
+            Paragraph::Text(text) => indented(&indent, &text),
+            _ => String::new(),
+        });
     "\n".to_owned() + &lines.collect::<String>()
 }
 

@@ -79,8 +79,10 @@ fn range(text: &str) -> Result<RangeInclusive<usize>, NoValue> {
 }
 
 fn count(text: &str) -> Result<usize, NoValue> {
-    let count = text.parse::<u64>().ok();
-    let count = count.filter(|n| (1..=MOST_CASES).contains(n));
+    let count = text
+        .parse::<u64>()
+        .ok()
+        .filter(|n| (1..=MOST_CASES).contains(n));
     let wrong = || {
         NoValue::new(format!(
             "expected a whole number from 1 to {MOST_CASES}; for more, run several seeds"
@@ -111,9 +113,10 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
             judged,
         };
         Ok(Report {
-            table: match args.totals {
-                true => survey.totals(),
-                false => survey.csv(),
+            table: if args.totals {
+                survey.totals()
+            } else {
+                survey.csv()
             },
             lines: survey_lines(&survey),
             warnings: Vec::new(),
@@ -271,8 +274,8 @@ fn every_variant(set: &[(String, String)]) -> Vec<Variant> {
     }
     let others = Strategy::ALL
         .into_iter()
-        .filter(|&s| !lags(s) && s != Strategy::Ladder);
-    let others = others.chain([Strategy::Ladder]);
+        .filter(|&s| !lags(s) && s != Strategy::Ladder)
+        .chain([Strategy::Ladder]);
     all.extend(others.map(|strategy| variant(strategy, "lagged", "start")));
     all
 }

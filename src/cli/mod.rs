@@ -165,9 +165,10 @@ pub fn main() -> ExitCode {
             // Clap reports help as an error, too; a failure to print it is ignored.
             // The typed text is shown unchanged; the message has no colours.
             let text = error.render().ansi().to_string();
-            match error.use_stderr() {
-                true => notify(text.trim_end_matches('\n')),
-                false => drop(say(&text)),
+            if error.use_stderr() {
+                notify(text.trim_end_matches('\n'))
+            } else {
+                drop(say(&text))
             }
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
         }

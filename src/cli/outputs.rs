@@ -53,9 +53,10 @@ impl OutputArgs {
 
     /// A progress bar on a terminal for the whole sweep; `unit` names what is counted.
     pub fn progress(&self, length: u64, unit: &str) -> ProgressBar {
-        let target = match !self.quiet && io::stderr().is_terminal() {
-            true => ProgressDrawTarget::stderr(),
-            false => ProgressDrawTarget::hidden(),
+        let target = if !self.quiet && io::stderr().is_terminal() {
+            ProgressDrawTarget::stderr()
+        } else {
+            ProgressDrawTarget::hidden()
         };
         let bar = ProgressBar::with_draw_target(Some(length), target);
         let shape = format!("{{wide_bar}} {{pos}} of {{len}} {unit}, {{eta}} left");

@@ -140,9 +140,10 @@ fn offered(
     let reported = [failures::describe(&model, failure)].into_iter();
     let head = Some(found.head.clone()).filter(|head| !head.is_empty());
     let page = DiagnosisPage::attached(reported.chain(rounds).collect(), found, Vec::new());
-    let why = match page.why.is_empty() {
-        true => head.into_iter().collect(),
-        false => page.why,
+    let why = if page.why.is_empty() {
+        head.into_iter().collect()
+    } else {
+        page.why
     };
     (why, all)
 }

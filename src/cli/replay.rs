@@ -125,12 +125,11 @@ fn one(file: &Path, args: &Args) -> Result<ReplayResult, Error> {
             return Ok(ReplayResult::Unreadable(why));
         }
     };
-    let replayed = match solver.is_named() {
-        true => {
-            let (_, mut attached, _) = solver.attach(false, None)?;
-            recorded.replay_with(&mut attached)
-        }
-        false => recorded.replay(),
+    let replayed = if solver.is_named() {
+        let (_, mut attached, _) = solver.attach(false, None)?;
+        recorded.replay_with(&mut attached)
+    } else {
+        recorded.replay()
     };
     Ok(match replayed {
         Ok(found) => ReplayResult::Compared {
@@ -181,10 +180,13 @@ fn record(file: &Path, replayed: &ReplayResult, seconds: f64) -> ReplayedRecord 
             recorded,
             differences,
             ..
-        } => match differences.is_empty() {
-            true => ("equal", None, Some(recorded)),
-            false => ("differs", None, Some(recorded)),
-        },
+        } => {
+            if differences.is_empty() {
+                ("equal", None, Some(recorded))
+            } else {
+                ("differs", None, Some(recorded))
+            }
+        }
         ReplayResult::NotRepeatable(recorded, why) => ("not-repeatable", Some(why), Some(recorded)),
         ReplayResult::Unreadable(why) => ("unreadable", Some(why), None),
     };

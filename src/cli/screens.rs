@@ -42,8 +42,11 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     };
     pen::ready().map_err(Error::usage)?;
     std::fs::create_dir_all(folder).map_err(|why| usage!("{}: {why}", folder.display()))?;
-    let words = args.colours.iter();
-    let chosen: Vec<Colours> = words.filter_map(|word| Colours::from_word(word)).collect();
+    let chosen: Vec<Colours> = args
+        .colours
+        .iter()
+        .filter_map(|word| Colours::from_word(word))
+        .collect();
     let (sizes, colours) = (
         or_all(&args.size, &SIZES),
         or_all(&chosen, &[Colours::Dark, Colours::Light, Colours::None]),
@@ -110,8 +113,9 @@ fn listed() -> String {
 /// Reads `120x40`.
 fn size(text: &str) -> Result<(u16, u16), String> {
     let (width, height) = super::export::size(text)?;
-    match [width, height].iter().all(|side| (10..=400).contains(side)) {
-        true => Ok((width, height)),
-        false => Err("a screen has 10 to 400 columns and rows".into()),
+    if [width, height].iter().all(|side| (10..=400).contains(side)) {
+        Ok((width, height))
+    } else {
+        Err("a screen has 10 to 400 columns and rows".into())
     }
 }

@@ -46,27 +46,33 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
 }
 
 fn find(name: &str, chart: bool) -> Result<&'static str, String> {
-    let found = match chart {
-        true => chart_file::text(name.strip_suffix(".ron").unwrap_or(name)),
-        false => builtin::find(name)
+    let found = if chart {
+        chart_file::text(name.strip_suffix(".ron").unwrap_or(name))
+    } else {
+        builtin::find(name)
             .map(|file| file.text)
             .or_else(|| studies::find(name).map(|file| file.text))
             .or_else(|| (name == benchmarks::BUILTIN).then(benchmarks::builtin_text))
             .or_else(|| teach::find(name).map(|file| file.text))
-            .or_else(|| (name == DECK.name).then_some(DECK.text)),
+            .or_else(|| (name == DECK.name).then_some(DECK.text))
     };
     found.ok_or_else(|| {
         let scenes = builtin::list().iter().map(|scene| scene.name);
-        let others = studies::list().iter().map(|study| study.name);
-        let others = others.chain([benchmarks::BUILTIN]);
-        let lessons = teach::list().iter().chain(teach::lesson::sheets());
-        let lessons = lessons.map(|lesson| lesson.name);
-        let (what, near) = match chart {
-            true => ("chart", did_you_mean(name, chart_file::names())),
-            false => (
+        let others = studies::list()
+            .iter()
+            .map(|study| study.name)
+            .chain([benchmarks::BUILTIN]);
+        let lessons = teach::list()
+            .iter()
+            .chain(teach::lesson::sheets())
+            .map(|lesson| lesson.name);
+        let (what, near) = if chart {
+            ("chart", did_you_mean(name, chart_file::names()))
+        } else {
+            (
                 "scene, study or lesson",
                 did_you_mean(name, scenes.chain(others).chain(lessons)),
-            ),
+            )
         };
         let name = stickslip_scene::shown::cut(name, 60);
         format!(

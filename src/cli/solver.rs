@@ -199,9 +199,10 @@ pub fn session_of(record: &Record, solver: &SolverArgs) -> Result<Session, Error
         (false, None) => Ok(Session::new(record.scene()?)),
         (true, Some(_)) => {
             let (scene, attached, log) = solver.attach(false, None)?;
-            match scene.spec == header.scene {
-                true => Ok(Session::attached(scene, Box::new(attached), log)),
-                false => wrong("the solver's scene differs from the journal's".into()),
+            if scene.spec == header.scene {
+                Ok(Session::attached(scene, Box::new(attached), log))
+            } else {
+                wrong("the solver's scene differs from the journal's".into())
             }
         }
         (false, Some(_)) => wrong(format!(

@@ -54,8 +54,13 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     let interrupt = Interrupt::listen();
     let plan = plan(args)?;
     args.sweep.run(&run::sweep(&plan), &interrupt, |runs| {
-        let pairs = plan.cases.iter().cloned().zip(runs);
-        let (cases, runs): (_, Vec<Run>) = pairs.filter_map(|(c, run)| Some((c, run?))).unzip();
+        let (cases, runs): (_, Vec<Run>) = plan
+            .cases
+            .iter()
+            .cloned()
+            .zip(runs)
+            .filter_map(|(c, run)| Some((c, run?)))
+            .unzip();
         let plan = Plan {
             cases,
             ..plan.clone()
@@ -165,8 +170,10 @@ fn warnings(plan: &Plan, runs: &[Run]) -> Vec<String> {
         ),
         (|run| run.jumped() > 0, "jumped to another branch"),
     ];
-    let counted = kinds.map(|(is, words)| (runs.iter().filter(|run| is(run)).count(), words));
-    let some = counted.iter().filter(|(count, _)| *count > 0);
-    some.map(|(count, words)| format!("{name}: {count} of {all} runs {words}"))
+    kinds
+        .map(|(is, words)| (runs.iter().filter(|run| is(run)).count(), words))
+        .iter()
+        .filter(|(count, _)| *count > 0)
+        .map(|(count, words)| format!("{name}: {count} of {all} runs {words}"))
         .collect()
 }

@@ -46,8 +46,11 @@ impl Report<'_> {
     /// Writes all files, and prints the summary.
     pub fn write(self, outputs: Outputs, quiet: bool) -> Result<(), Error> {
         outputs.write(&self.table, self.picture)?;
-        let lines = self.lines.iter().filter(|_| !quiet);
-        lines.chain(&self.warnings).for_each(|line| notify(line));
+        self.lines
+            .iter()
+            .filter(|_| !quiet)
+            .chain(&self.warnings)
+            .for_each(|line| notify(line));
         Ok(())
     }
 }
@@ -74,9 +77,10 @@ impl SweepArgs {
         if self.shard.is_some() && self.log.is_none() && !self.out.writes() {
             return wrong("needs an output file: --csv FILE for rows, --log FILE for --merge");
         }
-        Ok(match self.merge.is_empty() {
-            true => ResultStorage::Log(self.log.clone(), shard),
-            false => ResultStorage::Merge(self.merge.clone()),
+        Ok(if self.merge.is_empty() {
+            ResultStorage::Log(self.log.clone(), shard)
+        } else {
+            ResultStorage::Merge(self.merge.clone())
         })
     }
 
@@ -146,8 +150,11 @@ impl SweepArgs {
 }
 
 fn count_done<T: Outcome>(results: &[Option<T>]) -> usize {
-    let done = results.iter().flatten();
-    done.filter(|result| result.is_over()).count()
+    results
+        .iter()
+        .flatten()
+        .filter(|result| result.is_over())
+        .count()
 }
 
 /// Reports other machines that computed results, since last digits can differ between machines and tables name only this one.
@@ -186,8 +193,10 @@ fn report_missing(missing: &MissingCells, all: usize, unit: &str) {
     notify("To compute them, run this; then merge again with the new logs:");
     for (shard, file) in missing.shards.iter().take(MOST) {
         let (number, of) = (shard.number(), shard.of());
-        let file = file.as_ref().map(|file| file.display().to_string());
-        let file = file.unwrap_or_else(|| format!("shard-{number}-of-{of}.log"));
+        let file = file
+            .as_ref()
+            .map(|file| file.display().to_string())
+            .unwrap_or_else(|| format!("shard-{number}-of-{of}.log"));
         let part = match of.get() {
             1 => String::new(),
             _ => format!(" --shard {shard}"),
@@ -198,8 +207,12 @@ fn report_missing(missing: &MissingCells, all: usize, unit: &str) {
         ));
     }
     if missing.shards.len() > MOST {
-        let numbers = missing.shards.iter().skip(MOST);
-        let numbers: Vec<usize> = numbers.map(|(s, _)| s.number() as usize).collect();
+        let numbers: Vec<usize> = missing
+            .shards
+            .iter()
+            .skip(MOST)
+            .map(|(s, _)| s.number() as usize)
+            .collect();
         notify(&format!(
             "  and the same for shards {}",
             ranges(&numbers, usize::MAX)

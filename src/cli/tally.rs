@@ -384,8 +384,9 @@ impl<'a> Tally<'a> {
             self.messages.note(line);
         }
         if self.count_notes() > LEAST_SUMMARY {
-            let kinds = self.recoveries.iter();
-            let kinds: Vec<String> = kinds
+            let kinds: Vec<String> = self
+                .recoveries
+                .iter()
                 .map(|(kind, (count, seen))| format!("{kind} {count} × ({})", within(seen)))
                 .collect();
             self.messages
@@ -395,12 +396,16 @@ impl<'a> Tally<'a> {
 
     /// The monitors of the last accepted increment.
     pub fn monitors(&self) -> Vec<MonitorRecord> {
-        let all = self.scene.model.monitors.iter().zip(&self.monitors);
-        all.map(|(monitor, &value)| MonitorRecord {
-            name: monitor.name.clone(),
-            value,
-        })
-        .collect()
+        self.scene
+            .model
+            .monitors
+            .iter()
+            .zip(&self.monitors)
+            .map(|(monitor, &value)| MonitorRecord {
+                name: monitor.name.clone(),
+                value,
+            })
+            .collect()
     }
 
     /// The slave nodes in the last accepted increment.

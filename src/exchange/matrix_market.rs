@@ -51,9 +51,10 @@ pub fn read(text: &str) -> Result<Matrix, FormatError> {
         },
         symmetry,
     };
-    match coordinate {
-        true => read.coordinates(&mut words)?,
-        false => read.array(&mut words)?,
+    if coordinate {
+        read.coordinates(&mut words)?
+    } else {
+        read.array(&mut words)?
     }
     if let Some(more) = words.peek() {
         words.next(more)?;
@@ -134,9 +135,10 @@ impl MatrixBuilder {
         for _ in 0..words.count("the number of entries")? {
             let mut index = |most: usize, what: &str| {
                 let at = words.count(what)?;
-                match (1..=most).contains(&at) {
-                    true => Ok(at - 1),
-                    false => Err(words.broken(format!("{what} is {at}; it must be 1 to {most}"))),
+                if (1..=most).contains(&at) {
+                    Ok(at - 1)
+                } else {
+                    Err(words.broken(format!("{what} is {at}; it must be 1 to {most}")))
                 }
             };
             let row = index(self.matrix.rows, "a row")?;

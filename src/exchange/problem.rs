@@ -31,8 +31,10 @@ impl Matrix {
     /// The matrix with these rows, which have equal length.
     pub fn from_rows(rows: &[Vec<f64>]) -> Matrix {
         let entries = rows.iter().enumerate().flat_map(|(i, row)| {
-            let entries = row.iter().enumerate().filter(|(_, v)| is_there(**v));
-            entries.map(move |(j, &v)| (i, j, v))
+            row.iter()
+                .enumerate()
+                .filter(|(_, v)| is_there(**v))
+                .map(move |(j, &v)| (i, j, v))
         });
         Matrix {
             rows: rows.len(),

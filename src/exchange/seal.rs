@@ -70,9 +70,10 @@ pub fn opened(line: &str) -> Seal<'_> {
     };
     match line.rsplit_once('\t') {
         Some((text, word)) if is_digest(word) => {
-            match Digest::from_text(text).to_string() == word {
-                true => Seal::Whole(text),
-                false => Seal::Broken,
+            if Digest::from_text(text).to_string() == word {
+                Seal::Whole(text)
+            } else {
+                Seal::Broken
             }
         }
         _ => Seal::Missing,

@@ -110,9 +110,10 @@ fn begins_matrix(words: &Words<'_>, size: usize, contacts: usize) -> bool {
 /// Rejects a wrong number of rows if the number of columns, which follows, is that of a local problem.
 fn squared(words: &Words<'_>, rows: usize, local: usize, of_rows: &str) -> Result<(), FormatError> {
     let columns = words.peek().and_then(|word| word.parse::<usize>().ok());
-    match rows != local && columns == Some(local) {
-        true => Err(words.broken(format!("{of_rows} is {rows}; it must be {local}"))),
-        false => Ok(()),
+    if rows != local && columns == Some(local) {
+        Err(words.broken(format!("{of_rows} is {rows}; it must be {local}")))
+    } else {
+        Ok(())
     }
 }
 
@@ -221,8 +222,7 @@ fn blocks(
         column_of.push(words.count_up_to(across - 1, "a block column")?);
     }
     for (row, blocks) in begins.windows(2).enumerate() {
-        let own = column_of.iter().enumerate().take(blocks[1]);
-        for (number, &across) in own.skip(blocks[0]) {
+        for (number, &across) in column_of.iter().enumerate().take(blocks[1]).skip(blocks[0]) {
             words.exactly(number, "the number of a block")?;
             for column in range(&column_ends, across) {
                 for line in range(&row_ends, row) {
@@ -291,9 +291,10 @@ fn sparse(
         .parse()
         .map_err(|_| words.unlike(text, "the number of entries, a whole number"))?;
     words.line();
-    let (list, lists, others) = match by_rows {
-        true => ("row", rows, columns),
-        false => ("col", columns, rows),
+    let (list, lists, others) = if by_rows {
+        ("row", rows, columns)
+    } else {
+        ("col", columns, rows)
     };
     let what = format!("an entry of {name}");
     let mut entries = Vec::new();
@@ -332,8 +333,11 @@ fn sparse(
         }
     }
     if triplets && origin == HALF {
-        let other = entries.iter().filter(|(i, j, _)| i != j);
-        let other: Entries = other.map(|&(i, j, v)| (j, i, v)).collect();
+        let other: Entries = entries
+            .iter()
+            .filter(|(i, j, _)| i != j)
+            .map(|&(i, j, v)| (j, i, v))
+            .collect();
         entries.extend(other);
     }
     Ok(entries)
@@ -365,8 +369,9 @@ pub fn write(problem: &Local, storage: Storage) -> String {
 fn write_blocks(text: &mut String, rows: &[Vec<f64>], dimension: usize) {
     let contacts = rows.len() / dimension;
     let entries = |i: usize, j: usize| -> Vec<f64> {
-        let at = (0..dimension).flat_map(|b| (0..dimension).map(move |a| (a, b)));
-        at.map(|(a, b)| rows[dimension * i + a][dimension * j + b])
+        (0..dimension)
+            .flat_map(|b| (0..dimension).map(move |a| (a, b)))
+            .map(|(a, b)| rows[dimension * i + a][dimension * j + b])
             .collect()
     };
     let (mut begins, mut columns, mut blocks) = (vec![0], Vec::new(), String::new());

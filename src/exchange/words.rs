@@ -132,11 +132,12 @@ impl<'t> Words<'t> {
     pub fn coefficients(&mut self, count: usize) -> Result<Vec<f64>, FormatError> {
         let coefficient = |_| {
             let value = self.number("a friction coefficient")?;
-            match value < 0.0 {
-                true => Err(self.broken(format!(
+            if value < 0.0 {
+                Err(self.broken(format!(
                     "the friction coefficient is {value:?}; it must not be negative"
-                ))),
-                false => Ok(value),
+                )))
+            } else {
+                Ok(value)
             }
         };
         (0..count).map(coefficient).collect()

@@ -44,9 +44,10 @@ impl Line {
     pub fn plain(&self) -> String {
         let text = self.text();
         let text = text.trim_end();
-        match self.is_heading() {
-            true => format!("{text}\n{}", "─".repeat(text.width())),
-            false => text.to_owned(),
+        if self.is_heading() {
+            format!("{text}\n{}", "─".repeat(text.width()))
+        } else {
+            text.to_owned()
         }
     }
 
@@ -139,9 +140,12 @@ fn heading(line: &str) -> Option<Line> {
 fn block(code: &[&str], width: usize) -> Vec<Line> {
     let widest = code.iter().map(|line| line.width()).max().unwrap_or(0);
     let indent = INDENT.min(width.saturating_sub(widest));
-    let line = |line: &&str| match line.is_empty() {
-        true => Line::default(),
-        false => Line::new(Style::Plain, format!("{:indent$}{line}", "")),
+    let line = |line: &&str| {
+        if line.is_empty() {
+            Line::default()
+        } else {
+            Line::new(Style::Plain, format!("{:indent$}{line}", ""))
+        }
     };
     code.iter().map(line).collect()
 }

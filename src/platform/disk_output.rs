@@ -96,11 +96,15 @@ impl Output {
 
 /// Opens a device or a pipe for writing; fails at once for a pipe without a reader.
 fn open_direct(path: &Path) -> io::Result<File> {
-    let open = system::set_nonblocking(File::options().write(true)).open(path);
-    let open = open.map_err(|error| match system::is_unread_pipe(&error) {
-        true => io::Error::other("is a pipe without a reader"),
-        false => error,
-    })?;
+    let open = system::set_nonblocking(File::options().write(true))
+        .open(path)
+        .map_err(|error| {
+            if system::is_unread_pipe(&error) {
+                io::Error::other("is a pipe without a reader")
+            } else {
+                error
+            }
+        })?;
     // Blocking writes, since the reader may be slow.
     system::set_blocking(&open)?;
     Ok(open)
@@ -127,8 +131,9 @@ impl ReadyFile {
             File::open(path)
         };
         let _making = MAKING.lock().unwrap_or_else(PoisonError::into_inner);
-        let former = builder().make_in(folder(&self.target), kept);
-        let former = former.map_err(|source| FileError::new(&self.target, source))?;
+        let former = builder()
+            .make_in(folder(&self.target), kept)
+            .map_err(|source| FileError::new(&self.target, source))?;
         let _ = former.as_file().try_lock();
         Ok(Some(former))
     }
@@ -138,9 +143,10 @@ impl ReadyFile {
         let Some(file) = self.file else {
             return Ok(());
         };
-        let placed = match self.overwrite {
-            true => file.persist(&self.target),
-            false => file.persist_noclobber(&self.target),
+        let placed = if self.overwrite {
+            file.persist(&self.target)
+        } else {
+            file.persist_noclobber(&self.target)
         };
         placed.map(drop).map_err(|e| match e.error.kind() {
             io::ErrorKind::AlreadyExists if !self.overwrite => FileError::Exists(self.target),
@@ -217,8 +223,10 @@ fn temporary_file(target: &Path) -> io::Result<NamedTempFile> {
 
 /// The folder of a file.
 fn folder(target: &Path) -> &Path {
-    let parent = target.parent().filter(|parent| *parent != Path::new(""));
-    parent.unwrap_or(Path::new("."))
+    target
+        .parent()
+        .filter(|parent| *parent != Path::new(""))
+        .unwrap_or(Path::new("."))
 }
 
 /// Builder of temporary files.
@@ -250,8 +258,11 @@ fn sweep(directory: &Path) {
 
 /// The process number in the name of a temporary file.
 fn writer(name: &OsStr) -> Option<i32> {
-    let name = name.to_str()?.strip_prefix(PREFIX)?.strip_suffix(SUFFIX)?;
-    let (number, random) = name.split_once('-')?;
+    let (number, random) = name
+        .to_str()?
+        .strip_prefix(PREFIX)?
+        .strip_suffix(SUFFIX)?
+        .split_once('-')?;
     let is_random = !random.is_empty() && random.chars().all(|c| c.is_ascii_alphanumeric());
     number.parse().ok().filter(|_| is_random)
 }

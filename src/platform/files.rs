@@ -79,9 +79,12 @@ pub fn regular(path: &Path) -> Result<(), FileError> {
 pub fn stem(scene: &str) -> String {
     const MOST: usize = 64;
     let stem = Path::new(scene).file_stem().unwrap_or_default();
-    let plain = |c: char| match c.is_alphanumeric() || "-_.".contains(c) {
-        true => c,
-        false => '_',
+    let plain = |c: char| {
+        if c.is_alphanumeric() || "-_.".contains(c) {
+            c
+        } else {
+            '_'
+        }
     };
     stem.to_string_lossy()
         .chars()

@@ -56,9 +56,10 @@ pub fn bytes(path: &Path, most: u64, what: &'static str) -> Result<Vec<u8>, Unre
     let file = open(path, OpenOptions::new().read(true))?;
     let mut bytes = Vec::new();
     file.take(most + 1).read_to_end(&mut bytes)?;
-    match bytes.len() as u64 > most {
-        true => Err(Unreadable::TooLarge { most, what }),
-        false => Ok(bytes),
+    if bytes.len() as u64 > most {
+        Err(Unreadable::TooLarge { most, what })
+    } else {
+        Ok(bytes)
     }
 }
 
@@ -81,9 +82,10 @@ pub fn path_in_folder(own: &Path, named: &str) -> Result<PathBuf, String> {
     } else {
         folder
     };
-    match real.starts_with(disk::canonicalize(here).map_err(message)?) {
-        true => Ok(path),
-        false => Err("the file is a link to a file outside this folder".to_owned()),
+    if real.starts_with(disk::canonicalize(here).map_err(message)?) {
+        Ok(path)
+    } else {
+        Err("the file is a link to a file outside this folder".to_owned())
     }
 }
 
@@ -139,8 +141,9 @@ pub fn open(path: &Path, options: &mut OpenOptions) -> Result<File, Unreadable> 
         Err(error) if error.kind() == io::ErrorKind::NotFound => {}
         Err(error) => return Err(error.into()),
     }
-    let file = system::set_nonblocking(options).open(path);
-    let file = file.map_err(|error| failed(path, error))?;
+    let file = system::set_nonblocking(options)
+        .open(path)
+        .map_err(|error| failed(path, error))?;
     regular(&file.metadata()?)?;
     Ok(file)
 }
@@ -151,9 +154,10 @@ fn failed(path: &Path, error: io::Error) -> Unreadable {
         io::ErrorKind::NotFound => did_you_mean_file(&path.to_string_lossy()),
         _ => String::new(),
     };
-    match similar.is_empty() {
-        true => Unreadable::Failed(error),
-        false => Unreadable::Failed(io::Error::new(error.kind(), format!("{error}{similar}"))),
+    if similar.is_empty() {
+        Unreadable::Failed(error)
+    } else {
+        Unreadable::Failed(io::Error::new(error.kind(), format!("{error}{similar}")))
     }
 }
 

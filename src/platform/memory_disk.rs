@@ -159,8 +159,9 @@ impl Seek for File {
             SeekFrom::Current(by) => (self.at.load(Ordering::Relaxed) as u64, by),
             SeekFrom::End(by) => (self.metadata()?.len(), by),
         };
-        let at = from.checked_add_signed(by);
-        let at = at.ok_or(io::Error::from(ErrorKind::InvalidInput))?;
+        let at = from
+            .checked_add_signed(by)
+            .ok_or(io::Error::from(ErrorKind::InvalidInput))?;
         let place = usize::try_from(at).map_err(io::Error::other)?;
         self.at.store(place, Ordering::Relaxed);
         Ok(at)

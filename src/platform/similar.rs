@@ -19,8 +19,8 @@ pub fn did_you_mean_file(missing: &str) -> String {
     let entries = disk::read_dir(folder.unwrap_or(Path::new(".")));
     let names = entries.into_iter().flatten().flatten();
     let in_folder = |name| folder.map_or(Path::new("").join(&name), |folder| folder.join(&name));
-    let paths = names.map(|entry| in_folder(entry.file_name()));
-    let mut paths: Vec<String> = paths
+    let mut paths: Vec<String> = names
+        .map(|entry| in_folder(entry.file_name()))
         .map(|path| path.to_string_lossy().into_owned())
         .collect();
     // The order of a folder differs between machines.
@@ -45,8 +45,12 @@ pub fn nearest<'a>(wrong: &str, candidates: impl IntoIterator<Item = &'a str>) -
         let right: Vec<char> = right.chars().take(LONGEST + 1).collect();
         let same = wrong.iter().zip(&right).take_while(|(a, b)| a == b).count();
         let (a, b) = (&wrong[same..], &right[same..]);
-        let end = a.iter().rev().zip(b.iter().rev());
-        let end = end.take_while(|(a, b)| a == b).count();
+        let end = a
+            .iter()
+            .rev()
+            .zip(b.iter().rev())
+            .take_while(|(a, b)| a == b)
+            .count();
         let (a, b) = (&a[..a.len() - end], &b[..b.len() - end]);
         let most = a
             .len()

@@ -100,8 +100,11 @@ impl Answers {
                 continue;
             };
             let asked = numbers.starts_with('?');
-            let numbers = numbers.trim_matches(['?', '$']).split(';');
-            let numbers: Vec<u16> = numbers.filter_map(|n| n.parse().ok()).collect();
+            let numbers: Vec<u16> = numbers
+                .trim_matches(['?', '$'])
+                .split(';')
+                .filter_map(|n| n.parse().ok())
+                .collect();
             match (&end[..1], asked, numbers.as_slice()) {
                 ("R", false, [_, column]) => answers.columns.push(*column),
                 // 0: not supported; other values: set or reset, possibly permanently.

@@ -20,9 +20,10 @@ pub fn size() -> Option<(u16, u16)> {
 /// # Errors
 /// If standard output is closed.
 pub fn report_mouse(on: bool) -> io::Result<()> {
-    let codes = match on {
-        true => "\x1b[?1000h\x1b[?1006h",
-        false => "\x1b[?1006l\x1b[?1000l",
+    let codes = if on {
+        "\x1b[?1000h\x1b[?1006h"
+    } else {
+        "\x1b[?1006l\x1b[?1000l"
     };
     let mut out = stdout().lock();
     out.write_all(codes.as_bytes())?;

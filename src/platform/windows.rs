@@ -79,8 +79,9 @@ pub fn sync_folder(_: &Path) {}
 /// Name and version of the system.
 pub fn name() -> String {
     let asked = Command::new("cmd").args(["/C", "ver"]).output();
-    let name = asked.map(|asked| String::from_utf8_lossy(&asked.stdout).trim().to_owned());
-    name.unwrap_or_else(|_| "Windows".into())
+    asked
+        .map(|asked| String::from_utf8_lossy(&asked.stdout).trim().to_owned())
+        .unwrap_or_else(|_| "Windows".into())
 }
 
 /// `None`: the free space of a folder is not known.

@@ -16,9 +16,10 @@ pub fn size() -> Option<(u16, u16)> {
 /// # Errors
 /// If there is no console.
 pub fn report_mouse(on: bool) -> io::Result<()> {
-    match on {
-        true => crossterm::execute!(stdout(), EnableMouseCapture),
-        false => crossterm::execute!(stdout(), DisableMouseCapture),
+    if on {
+        crossterm::execute!(stdout(), EnableMouseCapture)
+    } else {
+        crossterm::execute!(stdout(), DisableMouseCapture)
     }
 }
 

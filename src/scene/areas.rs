@@ -57,8 +57,11 @@ pub(super) fn tributary(
             *alone[node].get_or_insert(0.0) += 0.5 * shares(side, nodes).iter().sum::<f64>();
         }
     }
-    let both = areas.into_iter().zip(alone);
-    both.map(|(area, alone)| area.or(alone)).collect()
+    areas
+        .into_iter()
+        .zip(alone)
+        .map(|(area, alone)| area.or(alone))
+        .collect()
 }
 
 /// Moves the area of a node on the axis to the next node of its side. Its ring has no length, so no pressure acts on it;
@@ -67,11 +70,11 @@ fn off_axis(side: &AreaSide<'_>, nodes: &[Node], shares: &mut [f64]) {
     let Some(made_of) = side.made_of else {
         return;
     };
-    let widths = side
+    let widths: Vec<f64> = side
         .nodes
         .iter()
-        .map(|&node| made_of.width(nodes[node].at[0]));
-    let widths: Vec<f64> = widths.collect();
+        .map(|&node| made_of.width(nodes[node].at[0]))
+        .collect();
     let widest = widths.iter().copied().fold(0.0, f64::max);
     for (k, width) in widths.iter().enumerate() {
         if *width <= NONE * widest {
@@ -88,8 +91,10 @@ pub(super) fn sides(body: &Body) -> Vec<AreaSide<'_>> {
         BodyKind::Solid(solid) => materials(solid),
         BodyKind::Linear(_) | BodyKind::Truss(_) => return Vec::new(),
     };
-    let lines = body.kind.lines().iter().zip(materials);
-    lines
+    body.kind
+        .lines()
+        .iter()
+        .zip(materials)
         .map(|(nodes, made_of)| AreaSide { nodes, made_of })
         .collect()
 }

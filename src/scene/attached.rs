@@ -29,11 +29,11 @@ const SHAPE: &str = "shape";
 pub(super) fn spec(scene: &Scene, increment: Option<f64>) -> Spec {
     let [from, to] = scene.load.unwrap_or([0.0, 1.0]);
     let whole = (to - from).abs();
-    let uniform = scene
+    let friction = scene
         .contacts
         .first()
-        .map(|first| friction(&first.friction));
-    let friction = uniform.unwrap_or_default();
+        .map(|first| friction(&first.friction))
+        .unwrap_or_default();
     let message = Answer::Scene(Box::new(scene.clone())).line();
     Spec {
         title: scene.title.clone(),
@@ -169,11 +169,11 @@ fn nodes(scene: &Scene) -> Result<Vec<Node>, Fault> {
     }
     let mut nodes: Vec<Node> = Vec::with_capacity(scene.nodes.len());
     // Nodes without a position are drawn in a row to the right of the others.
-    let known = scene
+    let [low, high] = scene
         .nodes
         .iter()
-        .filter_map(|node| Some(node.at?.in_space()[0]));
-    let [low, high] = known.fold([0.0, 0.0_f64], |[low, high], x| [x.min(low), x.max(high)]);
+        .filter_map(|node| Some(node.at?.in_space()[0]))
+        .fold([0.0, 0.0_f64], |[low, high], x| [x.min(low), x.max(high)]);
     let step = if high > low { 0.1 * (high - low) } else { 1.0 };
     let mut last = high;
     for (k, node) in scene.nodes.iter().enumerate() {

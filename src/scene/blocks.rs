@@ -117,8 +117,9 @@ impl Grid {
 
     /// Nodes of each element, cell by cell and row by row.
     pub fn elements(self) -> impl Iterator<Item = Vec<usize>> {
-        let cells = (0..self.rows).flat_map(move |r| (0..self.columns).map(move |c| (c, r)));
-        cells.flat_map(move |(c, r)| self.elements_of(c, r))
+        (0..self.rows)
+            .flat_map(move |r| (0..self.columns).map(move |c| (c, r)))
+            .flat_map(move |(c, r)| self.elements_of(c, r))
     }
 
     /// Elements per cell: two triangles or one quadrilateral.
@@ -150,8 +151,12 @@ impl Grid {
                 let ((a, b), (c, d)) = (corners[k], corners[(k + 1) % 3]);
                 ((a + c) / 2, (b + d) / 2)
             };
-            let all = corners.into_iter().chain((0..3).map(middle));
-            all.take(self.kind.nodes()).map(at).collect()
+            corners
+                .into_iter()
+                .chain((0..3).map(middle))
+                .take(self.kind.nodes())
+                .map(at)
+                .collect()
         };
         halves.map(triangle).to_vec()
     }
@@ -190,13 +195,13 @@ impl Grid {
                 let straight = (blend(corners.map(|c| c.0)), blend(corners.map(|c| c.1)));
                 // Weights of the four sides, and the station on each.
                 let parts = [(1.0 - t, i), (s, j), (t, i), (1.0 - s, j)];
-                let bent = curves
+                curves
                     .iter()
                     .zip(parts)
-                    .filter(|(curve, _)| !curve.is_empty());
-                bent.fold(straight, |(x, y), (curve, (part, k))| {
-                    (x + part * curve[k].0, y + part * curve[k].1)
-                })
+                    .filter(|(curve, _)| !curve.is_empty())
+                    .fold(straight, |(x, y), (curve, (part, k))| {
+                        (x + part * curve[k].0, y + part * curve[k].1)
+                    })
             })
             .collect()
     }

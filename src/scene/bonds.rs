@@ -13,8 +13,12 @@ use stickslip_core::words::counted;
 pub fn words(scene: &Scene) -> Vec<String> {
     let model = &scene.model;
     let having = |k: usize| -> Vec<f64> {
-        let gives = model.contacts.iter().map(|contact| contact.bond.give()[k]);
-        gives.filter(|give| *give > 0.0).collect()
+        model
+            .contacts
+            .iter()
+            .map(|contact| contact.bond.give()[k])
+            .filter(|give| *give > 0.0)
+            .collect()
     };
     let mut lines = Vec::new();
     let (normal, tangential) = (having(0), having(1));
@@ -63,8 +67,13 @@ fn kinked(model: &Model) -> Option<String> {
     let kinks = |(k, surface): &(usize, &Surface)| {
         !surface.rigid && surface.smooth.is_empty() && surface.elements.len() > 1 && touched(*k)
     };
-    let named = model.surfaces.iter().enumerate().filter(kinks);
-    let named: Vec<&str> = named.map(|(_, surface)| surface.name.as_str()).collect();
+    let named: Vec<&str> = model
+        .surfaces
+        .iter()
+        .enumerate()
+        .filter(kinks)
+        .map(|(_, surface)| surface.name.as_str())
+        .collect();
     let why = "may have kinks when they deform, where a node inside may hop between two elements; use smooth: true";
     (!named.is_empty()).then(|| format!("surfaces {}: {why}", named.join(", ")))
 }
@@ -99,9 +108,10 @@ fn left_out(scene: &Scene) -> Option<String> {
 fn range(values: &[f64]) -> String {
     let least = values.iter().copied().fold(f64::INFINITY, f64::min);
     let largest = values.iter().copied().fold(0.0, f64::max);
-    match least == largest {
-        true => sig4(least),
-        false => format!("{} to {}", sig4(least), sig4(largest)),
+    if least == largest {
+        sig4(least)
+    } else {
+        format!("{} to {}", sig4(least), sig4(largest))
     }
 }
 

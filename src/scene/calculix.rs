@@ -42,9 +42,10 @@ fn ends(name: &str, end: &str) -> bool {
 /// If it cannot be read.
 pub fn deck_of(cel: &Path) -> Result<Option<Deck>, SceneError> {
     let deck = cel.with_extension("inp");
-    match deck.is_file() {
-        true => outline(&deck.to_string_lossy()).map(Some),
-        false => Ok(None),
+    if deck.is_file() {
+        outline(&deck.to_string_lossy()).map(Some)
+    } else {
+        Ok(None)
     }
 }
 

@@ -43,16 +43,26 @@ pub(super) fn face(pieces: &[usize], bodies: &[Body], pairs: &[usize], slaves: &
     if pieces.is_empty() {
         return;
     }
-    let solids = bodies.iter().filter_map(|body| match &body.kind {
-        BodyKind::Solid(solid) => Some(&solid.edges),
-        _ => None,
-    });
-    let edges: Vec<&Vec<usize>> = solids.flatten().collect();
-    let nodes = slaves.iter().map(|slave| slave.node);
-    let pair_of: HashMap<usize, usize> = nodes.zip(pairs.iter().copied()).collect();
+    let edges: Vec<&Vec<usize>> = bodies
+        .iter()
+        .filter_map(|body| match &body.kind {
+            BodyKind::Solid(solid) => Some(&solid.edges),
+            _ => None,
+        })
+        .flatten()
+        .collect();
+    let pair_of: HashMap<usize, usize> = slaves
+        .iter()
+        .map(|slave| slave.node)
+        .zip(pairs.iter().copied())
+        .collect();
     for slave in slaves {
-        let own = slave.surfaces.iter().copied();
-        let mut own: Vec<usize> = own.filter(|surface| pieces.contains(surface)).collect();
+        let mut own: Vec<usize> = slave
+            .surfaces
+            .iter()
+            .copied()
+            .filter(|surface| pieces.contains(surface))
+            .collect();
         own.sort_unstable();
         let pair = pair_of.get(&slave.node);
         let slides = |edge: &&&Vec<usize>| edge.iter().all(|node| pair_of.get(node) == pair);

@@ -142,8 +142,8 @@ pub(crate) fn through(
 
 /// The Lagrange function i of m at t, for nodes at the parameters 0, 1, 2, …
 pub(crate) fn shape(m: usize, i: usize, t: f64) -> f64 {
-    let others = (0..m).filter(|j| *j != i);
-    others
+    (0..m)
+        .filter(|j| *j != i)
         .map(|j| (t - j as f64) / (i as f64 - j as f64))
         .product()
 }

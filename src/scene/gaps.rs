@@ -57,11 +57,14 @@ pub fn start_gaps(model: &Model) -> Vec<StartGaps> {
     }
     let stands = stands(&model.nodes, &model.surfaces, &model.contacts);
     let of = |surface: usize| {
-        let over = stands.iter().enumerate().filter_map(|(slave, stand)| {
-            let (spot, gap) = (*stand)?;
-            (spot.surface == surface).then_some((slave, gap))
-        });
-        let over: Vec<(usize, f64)> = over.collect();
+        let over: Vec<(usize, f64)> = stands
+            .iter()
+            .enumerate()
+            .filter_map(|(slave, stand)| {
+                let (spot, gap) = (*stand)?;
+                (spot.surface == surface).then_some((slave, gap))
+            })
+            .collect();
         let gaps = || over.iter().map(|(_, gap)| *gap);
         let least = gaps().fold(f64::INFINITY, f64::min);
         let largest = gaps().fold(f64::NEG_INFINITY, f64::max);
@@ -80,15 +83,17 @@ pub fn start_gaps(model: &Model) -> Vec<StartGaps> {
 pub fn words(model: &Model) -> Vec<String> {
     let line = |found: StartGaps| {
         let name = &model.surfaces[found.surface].name;
-        let [least, largest] = found
-            .range
-            .map(|gap| match gap.abs() <= NONE * model.length {
-                true => 0.0,
-                false => gap,
-            });
-        let range = match least == largest {
-            true => sig4(least),
-            false => format!("{} to {}", sig4(least), sig4(largest)),
+        let [least, largest] = found.range.map(|gap| {
+            if gap.abs() <= NONE * model.length {
+                0.0
+            } else {
+                gap
+            }
+        });
+        let range = if least == largest {
+            sig4(least)
+        } else {
+            format!("{} to {}", sig4(least), sig4(largest))
         };
         let inside = match found.inside.len() {
             0 => String::new(),
@@ -101,8 +106,10 @@ pub fn words(model: &Model) -> Vec<String> {
 
 /// Warnings about the initial state, one sentence each, the most serious first.
 pub fn warnings(model: &Model) -> Vec<String> {
-    let turned = turned(model);
-    let mut all: Vec<String> = turned.iter().map(|found| found.words(model)).collect();
+    let mut all: Vec<String> = turned(model)
+        .iter()
+        .map(|found| found.words(model))
+        .collect();
     let gaps = start_gaps(model);
     for found in gaps.iter().filter(|found| !found.inside.is_empty()) {
         let names = some(model, &found.inside);
@@ -234,8 +241,12 @@ fn unheld(model: &Model) -> Vec<String> {
     }
     let joined = |body: &Body| body.nodes.iter().any(|&node| bodies_at[node] > 1);
     let slaves = model.contacts.iter().map(|contact| contact.node);
-    let met = model.contacts.iter().flat_map(|contact| &contact.surfaces);
-    let mut met: Vec<usize> = met.copied().collect();
+    let mut met: Vec<usize> = model
+        .contacts
+        .iter()
+        .flat_map(|contact| &contact.surfaces)
+        .copied()
+        .collect();
     met.sort_unstable();
     met.dedup();
     let masters = met
@@ -264,16 +275,21 @@ fn unheld(model: &Model) -> Vec<String> {
 
 /// Pairs of solids where a node of one lies inside the outline of the other.
 fn overlapping(model: &Model) -> Vec<String> {
-    let solids = model.bodies.iter().filter_map(|body| match &body.kind {
-        BodyKind::Solid(solid) => Some((body, Outline::new(model, &solid.edges))),
-        _ => None,
-    });
-    let solids: Vec<(&Body, Outline)> = solids.collect();
+    let solids: Vec<(&Body, Outline)> = model
+        .bodies
+        .iter()
+        .filter_map(|body| match &body.kind {
+            BodyKind::Solid(solid) => Some((body, Outline::new(model, &solid.edges))),
+            _ => None,
+        })
+        .collect();
     let near = NONE.sqrt() * model.length;
     let mut all = Vec::new();
     for (a, (body, outline)) in solids.iter().enumerate() {
-        let others = solids.iter().enumerate();
-        let others = others.filter(|(b, (_, other))| *b != a && outline.meets(other));
+        let others = solids
+            .iter()
+            .enumerate()
+            .filter(|(b, (_, other))| *b != a && outline.meets(other));
         let own = LazyCell::new(|| body.nodes.iter().copied().collect::<HashSet<usize>>());
         for (_, (other, _)) in others {
             let deep = |node: &&usize| {
@@ -300,8 +316,10 @@ struct Outline {
 
 impl Outline {
     fn new(model: &Model, edges: &[Vec<usize>]) -> Self {
-        let pairs = edges.iter().flat_map(|edge| edge.windows(2));
-        let sides = pairs.map(|pair| [model.nodes[pair[0]].at, model.nodes[pair[1]].at]);
+        let sides = edges
+            .iter()
+            .flat_map(|edge| edge.windows(2))
+            .map(|pair| [model.nodes[pair[0]].at, model.nodes[pair[1]].at]);
         let sides: Vec<[[f64; 2]; 2]> = sides.collect();
         let over = |from: f64, choose: fn(f64, f64) -> f64| {
             let ends = || sides.iter().flatten();

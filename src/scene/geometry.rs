@@ -105,8 +105,9 @@ impl Folds {
     /// The table for a kind, at 5 by 5 points.
     pub fn from_kind(kind: ElementKind) -> Self {
         let part = |k: usize| k as f64 / 4.0;
-        let places = (0..25).map(|k| (part(k % 5), part(k / 5)));
-        let places = places.filter(|(r, s)| !kind.is_triangle() || r + s <= 1.0);
+        let places = (0..25)
+            .map(|k| (part(k % 5), part(k / 5)))
+            .filter(|(r, s)| !kind.is_triangle() || r + s <= 1.0);
         // With three nodes the derivatives are constant.
         let places = places.take(if kind == ElementKind::Triangle3 {
             1

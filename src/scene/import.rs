@@ -81,8 +81,8 @@ pub(crate) fn mesh(file: &str) -> Result<Mesh, NoMesh> {
         std::path::Path::new(file),
         MESH_BYTES,
         "meshes are limited to that size",
-    );
-    let bytes = bytes.map_err(|error| NoMesh::Unread(error.to_string()))?;
+    )
+    .map_err(|error| NoMesh::Unread(error.to_string()))?;
     gmsh::read(&bytes).map_err(|broken| NoMesh::Broken(read::of_file(file, broken)))
 }
 
@@ -131,8 +131,7 @@ pub(crate) fn mesh_nodes(
         .iter()
         .flat_map(|cell| &cell.nodes)
         .for_each(|&n| used[n] = true);
-    let nodes = (0..mesh.nodes.len()).filter(|&n| used[n]);
-    let nodes = nodes.map(|n| {
+    let nodes = (0..mesh.nodes.len()).filter(|&n| used[n]).map(|n| {
         (
             label(&n),
             scale * mesh.nodes[n][0],
@@ -154,8 +153,9 @@ pub(crate) fn mesh_nodes(
         }
     }
     let groups = |dimension: u8| {
-        let groups = mesh.groups.iter();
-        groups.filter(move |group| mesh.cells[group.cells[0]].kind.dimension() == dimension)
+        mesh.groups
+            .iter()
+            .filter(move |group| mesh.cells[group.cells[0]].kind.dimension() == dimension)
     };
     let sets = groups(0).map(|group| NodeSet {
         name: usable(&group.name, 0),
@@ -233,8 +233,9 @@ fn elements(mesh: &Mesh) -> Result<Vec<Cells>, (&'static str, String)> {
 
 /// The kind of element with full integration for a cell; `None` for points and lines.
 pub(crate) fn element_kind(cell: CellKind) -> Option<ElementKind> {
-    let mut kinds = ElementKind::ALL.into_iter();
-    kinds.find(|kind| kind.vtk() == cell_type(cell))
+    ElementKind::ALL
+        .into_iter()
+        .find(|kind| kind.vtk() == cell_type(cell))
 }
 
 /// The name of a group, changed so that a scene can use it.
@@ -246,9 +247,10 @@ fn usable(name: &str, dimension: usize) -> String {
         .map(|c| if bad(c) { '_' } else { c })
         .collect();
     let taken = limits::TAKEN.contains(&name.as_str()) || name.chars().all(|c| c.is_ascii_digit());
-    match taken {
-        true => format!("{}{name}", ["point", "line", "surface"][dimension]),
-        false => name,
+    if taken {
+        format!("{}{name}", ["point", "line", "surface"][dimension])
+    } else {
+        name
     }
 }
 

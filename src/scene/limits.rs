@@ -126,9 +126,10 @@ pub fn node_id_of(name: &str, most: usize) -> String {
 
 /// Rejects ids of single nodes as [`id`] does, but allows dots between other characters, as in the node names of a chain.
 pub(crate) fn node_id(path: &Path, node: &str) -> Result<(), Fault> {
-    match node.split('.').all(|part| !part.is_empty()) {
-        true => id(path, &node.replace('.', "_")),
-        false => id(path, node),
+    if node.split('.').all(|part| !part.is_empty()) {
+        id(path, &node.replace('.', "_"))
+    } else {
+        id(path, node)
     }
 }
 

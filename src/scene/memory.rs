@@ -23,8 +23,10 @@ pub fn free() -> f64 {
 }
 
 fn read_free() -> f64 {
-    let machine = fs::read_to_string("/proc/meminfo").ok();
-    let machine = machine.as_deref().and_then(available);
+    let machine = fs::read_to_string("/proc/meminfo")
+        .ok()
+        .as_deref()
+        .and_then(available);
     let groups = fs::read_to_string("/proc/self/cgroup").unwrap_or_default();
     let group = confined(Path::new("/sys/fs/cgroup"), &groups);
     machine.unwrap_or(UNTOLD).min(group)

@@ -24,10 +24,7 @@ pub fn warning(model: &Model) -> Option<String> {
     };
     (noise > Norms::AUDIBLE).then(|| {
         let enough = value * Norms::AUDIBLE / noise;
-        let end = match noise > Norms::LOUDEST {
-            true => format!("at most {:.0e} is accepted", Norms::LOUDEST),
-            false => "the contact forces have few digits left".to_owned(),
-        };
+        let end = if noise > Norms::LOUDEST { format!("at most {:.0e} is accepted", Norms::LOUDEST) } else { "the contact forces have few digits left".to_owned() };
         format!(
             "body {}, {word} = {value:.0e}, is so stiff that the round-off of its forces is about {noise:.0e} of the loads; {end}. {word} = {enough:.0e} is practically rigid",
             body.name

@@ -28,12 +28,14 @@ struct HeldPoint {
 /// One sentence for each solid that prescribed displacements compress beyond the range of St Venant-Kirchhoff's law.
 pub fn warnings(model: &Model) -> Vec<String> {
     let motions = Motions::from_model(model);
-    let bodies = model.bodies.iter();
-    let warnings = bodies.filter_map(|body| match &body.kind {
-        BodyKind::Solid(solid) => warning(&motions, body, solid),
-        _ => None,
-    });
-    warnings.collect()
+    model
+        .bodies
+        .iter()
+        .filter_map(|body| match &body.kind {
+            BodyKind::Solid(solid) => warning(&motions, body, solid),
+            _ => None,
+        })
+        .collect()
 }
 
 fn warning(motions: &Motions, body: &Body, solid: &Solid) -> Option<String> {
@@ -72,8 +74,9 @@ fn loads(model: &Model) -> Vec<f64> {
         .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], load| {
             [low.min(*load), high.max(*load)]
         });
-    let corners = scales.map(|(load, _)| *load);
-    let corners = corners.filter(|load| (ends[0]..=ends[1]).contains(load));
+    let corners = scales
+        .map(|(load, _)| *load)
+        .filter(|load| (ends[0]..=ends[1]).contains(load));
     let mut all: Vec<f64> = model.path.iter().copied().chain(corners).collect();
     all.sort_by(f64::total_cmp);
     all.dedup();
@@ -129,10 +132,16 @@ fn held_points(body: &Body, motions: &Motions, (axis, load): (usize, f64)) -> Ve
         motion,
         node,
     };
-    let own = body.nodes.iter();
-    let own = own.filter_map(|&node| Some(point(node, motions.at(node, axis, load)?)));
-    let contacts = body.nodes.iter().flat_map(|&node| &motions.contacts[node]);
-    let mut contacts: Vec<usize> = contacts.copied().collect();
+    let own = body
+        .nodes
+        .iter()
+        .filter_map(|&node| Some(point(node, motions.at(node, axis, load)?)));
+    let mut contacts: Vec<usize> = body
+        .nodes
+        .iter()
+        .flat_map(|&node| &motions.contacts[node])
+        .copied()
+        .collect();
     contacts.sort_unstable();
     let pushed = contacts.iter().filter_map(|&number| {
         let contact = &model.contacts[number];

@@ -186,9 +186,10 @@ impl FileKind {
         let cel = calculix::cel_of(file).filter(|_| self == FileKind::Progress);
         let cel = cel.map(|cel| cel.display().to_string());
         let file = shown::cut(cel.as_deref().unwrap_or(file), 120);
-        let file = match file.contains(char::is_whitespace) {
-            true => format!("'{file}'"),
-            false => file,
+        let file = if file.contains(char::is_whitespace) {
+            format!("'{file}'")
+        } else {
+            file
         };
         let command = self.own()?.command;
         (!command.is_empty()).then(|| command.replace("{}", &file))
@@ -249,11 +250,10 @@ impl Scene {
         if let Some(problem) = problems::opened::from_file(name, overrides) {
             return Scene::assemble(name, "", problem?.spec(), overrides, Vec::new());
         }
-        let text = match deck::is_called_so(name) {
-            true => {
-                deck::text(std::path::Path::new(name)).map_err(|error| read::unread(name, error))
-            }
-            false => read::text(name),
+        let text = if deck::is_called_so(name) {
+            deck::text(std::path::Path::new(name)).map_err(|error| read::unread(name, error))
+        } else {
+            read::text(name)
         };
         let text = text.map_err(|mut error| {
             if !disk::exists(name) {
@@ -302,8 +302,9 @@ impl Scene {
             overrides,
         };
         let start = Start::new(text);
-        let mut readers = READERS.iter();
-        let read = readers.find_map(|reader| reader.read.filter(|_| (reader.recognise)(&start)));
+        let read = READERS
+            .iter()
+            .find_map(|reader| reader.read.filter(|_| (reader.recognise)(&start)));
         match read {
             Some(read) => read(&source),
             None => source
@@ -370,8 +371,10 @@ impl Source<'_> {
         let name = self.name;
         let read = deck::read(name, self.text)?;
         let place = |overrides: &[Override], fault: Fault| {
-            let own = read.origin.of(&fault.path);
-            let own = own.map(|(file, at)| (file.to_owned(), at));
+            let own = read
+                .origin
+                .of(&fault.path)
+                .map(|(file, at)| (file.to_owned(), at));
             match (placed(name, "", overrides, fault), own) {
                 (fault, Some((file, at))) if fault.set.is_none() => SceneError {
                     file,

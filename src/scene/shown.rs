@@ -133,9 +133,12 @@ pub fn aligned<R: AsRef<[String]>>(table: &[R], first: usize) -> Vec<String> {
     let is_left = |k: usize| k < first || k + 1 == columns;
     let width = |k: usize| table.iter().map(|row| row[k].width()).max().unwrap_or(0);
     let widths: Vec<usize> = (0..columns).map(width).collect();
-    let cell = |(k, text): (usize, &String)| match is_left(k) {
-        true => padded(text, widths[k]),
-        false => padded_before(text, widths[k]),
+    let cell = |(k, text): (usize, &String)| {
+        if is_left(k) {
+            padded(text, widths[k])
+        } else {
+            padded_before(text, widths[k])
+        }
     };
     let line = |row: &Vec<String>| {
         let cells: Vec<String> = row.iter().enumerate().map(cell).collect();
@@ -150,9 +153,10 @@ fn escaped(text: &str, harmful: impl Fn(char) -> bool) -> Cow<'_, str> {
     }
     let mut shown = String::with_capacity(text.len() + 16);
     for c in text.chars() {
-        match harmful(c) {
-            true => shown.extend(c.escape_unicode()),
-            false => shown.push(c),
+        if harmful(c) {
+            shown.extend(c.escape_unicode())
+        } else {
+            shown.push(c)
         }
     }
     Cow::Owned(shown)

@@ -212,8 +212,12 @@ impl Benchmarks {
             let count = increments(&model.path, |leg| model.on_leg(leg)) as u64;
             Ok(one(count, Arc::new(model.clone()), &spare, watch))
         })?;
-        let pairs = self.list.iter().zip(of);
-        Ok(pairs.map(|(b, place)| b.compare(&runs[place])).collect())
+        Ok(self
+            .list
+            .iter()
+            .zip(of)
+            .map(|(b, place)| b.compare(&runs[place]))
+            .collect())
     }
 
     fn check_monitors(&self, benchmark: &Benchmark, scene: &Scene) -> Result<(), SceneError> {

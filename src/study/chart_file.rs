@@ -151,9 +151,10 @@ impl Chart {
         let file: File = parse(name, text)?;
         Ok(Chart {
             title: String::new(),
-            truth: match file.finest.is_empty() {
-                true => truth(&file.scene),
-                false => Truth::Run(file.finest),
+            truth: if file.finest.is_empty() {
+                truth(&file.scene)
+            } else {
+                Truth::Run(file.finest)
             },
             scene: file.scene,
             set: file.set,
@@ -171,32 +172,38 @@ fn series(along: &Vary, others: &[Vary]) -> Vec<Series> {
     for other in others {
         let extended = sets.iter().flat_map(|set| {
             let pair = |value: &String| (other.path.clone(), value.clone());
-            let values = other.values.iter().map(pair);
-            values.map(|pair| [&set[..], &[pair]].concat())
+            other
+                .values
+                .iter()
+                .map(pair)
+                .map(|pair| [&set[..], &[pair]].concat())
         });
         sets = extended.collect();
     }
     let name = |set: &[(String, String)]| match set {
         [] => along.path.clone(),
-        set => {
-            let words = set.iter().map(|(path, value)| format!("{path}={value}"));
-            words.collect::<Vec<_>>().join(", ")
-        }
+        set => set
+            .iter()
+            .map(|(path, value)| format!("{path}={value}"))
+            .collect::<Vec<_>>()
+            .join(", "),
     };
-    let series = sets.into_iter().map(|set| Series {
-        name: name(&set),
-        vary: vec![along.clone()],
-        set,
-    });
-    series.collect()
+    sets.into_iter()
+        .map(|set| Series {
+            name: name(&set),
+            vary: vec![along.clone()],
+            set,
+        })
+        .collect()
 }
 
 /// The most accurate reference for a scene. A user's file is not the built-in scene of the same name.
 fn truth(scene: &str) -> Truth {
     let builtin = builtin::find(scene).is_some() && !std::path::Path::new(scene).is_file();
-    match builtin && Reference::builtin(scene, &[]).is_some() {
-        true => Truth::Builtin,
-        false => Truth::Finest,
+    if builtin && Reference::builtin(scene, &[]).is_some() {
+        Truth::Builtin
+    } else {
+        Truth::Finest
     }
 }
 

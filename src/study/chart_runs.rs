@@ -110,23 +110,32 @@ impl PlannedChart {
                 ..Study::from_scene(&chart.scene)
             })
         };
-        let plans = chart.series.iter();
-        let plans = plans.map(|series| lay_out(&series.vary, &series.set));
-        let plans = plans.collect::<Result<Vec<Plan>, _>>()?;
+        let plans = chart
+            .series
+            .iter()
+            .map(|series| lay_out(&series.vary, &series.set))
+            .collect::<Result<Vec<Plan>, _>>()?;
         let truth = match &chart.truth {
             Truth::Run(settings) => Some(lay_out(&[], settings)?),
             _ => None,
         };
-        let first = plans.iter().flat_map(|plan| &plan.cases).next();
-        let first = first.map(Case::model).transpose()?;
+        let first = plans
+            .iter()
+            .flat_map(|plan| &plan.cases)
+            .next()
+            .map(Case::model)
+            .transpose()?;
         let path = first
             .as_ref()
             .map_or(&[][..], |model| model.path.as_slice());
         let table = table(&chart, path)?;
         let mut fixed = fixed(&chart.loads, path, table.as_ref());
         // Initial overlaps are closed over the whole first leg.
-        let mut contacts = first.iter().flat_map(|model| &model.contacts);
-        if contacts.any(|contact| contact.overlap != 0.0) {
+        if first
+            .iter()
+            .flat_map(|model| &model.contacts)
+            .any(|contact| contact.overlap != 0.0)
+        {
             fixed.retain(|(leg, _)| *leg > 0);
         }
         Ok(PlannedChart {
@@ -160,19 +169,24 @@ impl PlannedChart {
 pub fn sweep(charts: &[PlannedChart], repeats: usize) -> Sweep<'_, TimedRun> {
     let plans = || charts.iter().flat_map(PlannedChart::all);
     let places = |plan: &Plan| 0..plan.cases.len();
-    let fixed = charts.iter().flat_map(|chart| {
-        let cases = chart.all();
-        cases.flat_map(move |plan| places(plan).map(|_| chart.fixed.as_slice()))
-    });
-    let fixed: Vec<&[(usize, f64)]> = fixed.collect();
+    let fixed: Vec<&[(usize, f64)]> = charts
+        .iter()
+        .flat_map(|chart| {
+            let cases = chart.all();
+            cases.flat_map(move |plan| places(plan).map(|_| chart.fixed.as_slice()))
+        })
+        .collect();
     let loads = charts.iter().map(|chart| &chart.fixed).collect::<Vec<_>>();
     let loads = ("fixed loads".to_owned(), format!("{loads:?}"));
-    let cases = plans().flat_map(|plan| places(plan).map(move |k| (plan, k)));
-    let cases: Vec<(&Plan, usize)> = cases.collect();
+    let cases: Vec<(&Plan, usize)> = plans()
+        .flat_map(|plan| places(plan).map(move |k| (plan, k)))
+        .collect();
     let names = cases.clone();
     let repeated = ("repeats".to_owned(), repeats.to_string());
-    let truths = charts.iter().filter_map(|chart| chart.truth.as_ref());
-    let truths: Vec<&Plan> = truths.collect();
+    let truths: Vec<&Plan> = charts
+        .iter()
+        .filter_map(|chart| chart.truth.as_ref())
+        .collect();
     let compute = move |k: usize, _: &SolverPool, watch: &Watch| {
         let fixed = fixed[k];
         let (plan, k) = cases[k];
@@ -207,8 +221,7 @@ fn table(chart: &Chart, path: &[f64]) -> Result<Option<Reference>, PrecisionErro
         Truth::Builtin => {
             let name = chart.scene.strip_suffix(".ron").unwrap_or(&chart.scene);
             let none = || format!("there is no built-in reference for {name}");
-            let table = Reference::builtin(name, path);
-            let table = table.ok_or_else(none);
+            let table = Reference::builtin(name, path).ok_or_else(none);
             Ok(Some(table.map_err(PrecisionError::Reference)??))
         }
         Truth::Run(_) | Truth::Finest | Truth::Richardson => Ok(None),
@@ -228,10 +241,12 @@ fn fixed(listed: &[f64], path: &[f64], table: Option<&Reference>) -> Vec<(usize,
         let &[from, to] = ends else { continue };
         let mut loads: Vec<f64> = match table {
             _ if !listed.is_empty() => listed.to_vec(),
-            Some(table) => {
-                let rows = table.rows.iter().filter(|row| row.leg == leg);
-                rows.map(|row| row.load).collect()
-            }
+            Some(table) => table
+                .rows
+                .iter()
+                .filter(|row| row.leg == leg)
+                .map(|row| row.load)
+                .collect(),
             None => vec![0.5 * (from + to)],
         };
         let inside = |load: &f64| {
@@ -242,8 +257,10 @@ fn fixed(listed: &[f64], path: &[f64], table: Option<&Reference>) -> Vec<(usize,
         loads.sort_by(|a, b| (a - from).abs().total_cmp(&(b - from).abs()));
         let every = loads.len().div_ceil(MOST_FIXED).max(1);
         let last = loads.len();
-        let kept = loads.iter().enumerate();
-        let kept = kept.filter(|(k, _)| (last - k).is_multiple_of(every));
+        let kept = loads
+            .iter()
+            .enumerate()
+            .filter(|(k, _)| (last - k).is_multiple_of(every));
         fixed.extend(kept.map(|(_, load)| (leg, *load)));
     }
     fixed
@@ -255,8 +272,10 @@ fn stop_at(model: &mut Model, fixed: &[(usize, f64)]) {
     let mut sizes = Vec::new();
     for (leg, ends) in model.path.windows(2).enumerate() {
         let &[from, to] = ends else { continue };
-        let own = fixed.iter().filter(|(of, _)| *of == leg);
-        let own = own.map(|(_, load)| *load);
+        let own = fixed
+            .iter()
+            .filter(|(of, _)| *of == leg)
+            .map(|(_, load)| *load);
         path.extend(own.filter(|load| (from.min(to)..from.max(to)).contains(load)));
         path.push(to);
         sizes.resize(path.len() - 1, model.on_leg(leg));

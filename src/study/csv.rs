@@ -69,9 +69,13 @@ fn header(plan: &Plan) -> String {
         "minors",
         "unsettled",
     ];
-    let names = plan.columns.iter().map(String::as_str).chain(words);
-    let names = names.chain(plan.monitors.iter().map(String::as_str));
-    let names = names.chain(["jumped"]);
+    let names = plan
+        .columns
+        .iter()
+        .map(String::as_str)
+        .chain(words)
+        .chain(plan.monitors.iter().map(String::as_str))
+        .chain(["jumped"]);
     names.map(field).collect::<Vec<_>>().join(",") + "\n"
 }
 
@@ -121,9 +125,10 @@ fn rows(text: &mut String, leading: &str, plan: &Plan, run: &Run) {
 /// A text as a field of a CSV file.
 pub fn field(text: &str) -> String {
     let text = shown::line(text);
-    match text.contains([',', '"']) {
-        true => format!("\"{}\"", text.replace('"', "\"\"")),
-        false => text.into_owned(),
+    if text.contains([',', '"']) {
+        format!("\"{}\"", text.replace('"', "\"\""))
+    } else {
+        text.into_owned()
     }
 }
 
@@ -190,8 +195,9 @@ impl<'a> Table<'a> {
 
     /// The texts of its comments.
     pub(super) fn comments(&self) -> impl Iterator<Item = &'a str> {
-        let lines = self.text.lines();
-        lines.filter_map(|line| line.strip_prefix('#').map(str::trim))
+        self.text
+            .lines()
+            .filter_map(|line| line.strip_prefix('#').map(str::trim))
     }
 
     /// Names of its columns.
@@ -237,8 +243,10 @@ impl<'a> Table<'a> {
 /// Length of the comments and blank lines at the beginning of a text: record positions do not include these.
 fn skipped(text: &str) -> usize {
     let lines = text.split_inclusive('\n');
-    let skipped = lines.take_while(|line| line.trim().is_empty() || line.starts_with('#'));
-    skipped.map(str::len).sum()
+    lines
+        .take_while(|line| line.trim().is_empty() || line.starts_with('#'))
+        .map(str::len)
+        .sum()
 }
 
 /// The column (from 1, in characters) at which a field (from 0) of a line begins; past the end if there are

@@ -79,9 +79,10 @@ impl CurveChart {
     /// If the font cannot be read.
     pub fn sheet(&self) -> Result<Sheet, PlotError> {
         let is_told = |c: &Curve| !c.label.is_empty() || c.end != CurveEnd::Whole;
-        let named = match self.curves.iter().any(is_told) {
-            true => &self.curves[..self.curves.len().min(MOST_ENTRIES)],
-            false => &[],
+        let named = if self.curves.iter().any(is_told) {
+            &self.curves[..self.curves.len().min(MOST_ENTRIES)]
+        } else {
+            &[]
         };
         let labels = widest(named.iter().map(|c| c.label.as_str()), LABEL)?;
         let words = widest(named.iter().filter_map(|c| c.end.why()), SMALL)?;

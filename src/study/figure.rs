@@ -43,26 +43,34 @@ pub fn chart(plan: &Plan, runs: &[Run]) -> CurveChart {
 
 /// The settings that distinguish a run: `increment=0.02, geometry=frozen`. Empty if there is only one run.
 pub fn label(names: &[String], values: &[String]) -> String {
-    let pairs = names.iter().zip(values);
-    let pairs = pairs.map(|(name, value)| match name.as_str() {
-        "scene" => value.clone(),
-        _ => format!("{name}={value}"),
-    });
-    pairs.collect::<Vec<_>>().join(", ")
+    names
+        .iter()
+        .zip(values)
+        .map(|(name, value)| match name.as_str() {
+            "scene" => value.clone(),
+            _ => format!("{name}={value}"),
+        })
+        .collect::<Vec<_>>()
+        .join(", ")
 }
 
 /// Settings as typed: `path=value`.
 pub fn assigned(settings: &[(String, String)]) -> impl Iterator<Item = String> {
-    let pairs = settings.iter();
-    pairs.map(|(path, value)| format!("{path}={value}"))
+    settings
+        .iter()
+        .map(|(path, value)| format!("{path}={value}"))
 }
 
 /// The changed and varied settings of a study, after the scenes.
 pub(super) fn changes(study: &Study) -> String {
-    let varied = study.vary.iter();
-    let varied = varied.map(|vary| format!("{} over {}", vary.path, vary.values.join(", ")));
-    let all = assigned(&study.set).chain(varied);
-    all.map(|change| format!("; {change}")).collect()
+    let varied = study
+        .vary
+        .iter()
+        .map(|vary| format!("{} over {}", vary.path, vary.values.join(", ")));
+    assigned(&study.set)
+        .chain(varied)
+        .map(|change| format!("; {change}"))
+        .collect()
 }
 
 /// The settings that distinguish a case of a plan.
@@ -75,9 +83,10 @@ pub fn short_names(paths: &[String]) -> Vec<String> {
     let last = |path: &String| path.rsplit('.').next().unwrap_or(path).to_owned();
     let short: Vec<String> = paths.iter().map(last).collect();
     let unique = |name: &String| short.iter().filter(|other| *other == name).count() == 1;
-    match short.iter().all(unique) {
-        true => short,
-        false => paths.to_vec(),
+    if short.iter().all(unique) {
+        short
+    } else {
+        paths.to_vec()
     }
 }
 

@@ -4,8 +4,10 @@
 pub fn step((low, high): (f64, f64), most: f64) -> f64 {
     let least = (high - low) / most;
     let decade = 10_f64.powf(least.log10().floor());
-    let steps = [1.0, 2.0, 5.0, 10.0].map(|step| step * decade);
-    let step = steps.into_iter().find(|step| *step >= least);
+    let step = [1.0, 2.0, 5.0, 10.0]
+        .map(|step| step * decade)
+        .into_iter()
+        .find(|step| *step >= least);
     step.unwrap_or(least)
 }
 

@@ -258,9 +258,10 @@ impl Lines<'_> {
         let broken = |message: &str| LogError::broken(self.path, self.number + 1, message);
         let length = bytes.len();
         if bytes.pop_if(|last| *last == b'\n').is_none() {
-            return match length < self.most {
-                true => Ok(None),
-                false => Err(broken("the line is longer than any result")),
+            return if length < self.most {
+                Ok(None)
+            } else {
+                Err(broken("the line is longer than any result"))
             };
         }
         // A copy through Windows may end its lines with CRLF.
@@ -446,9 +447,10 @@ impl Log {
     ///
     /// # Errors If it cannot be written, or could not be read back.
     pub fn keep<T: Outcome>(&self, key: Key, value: &T) -> Result<(), LogError> {
-        match value.is_sound() {
-            true => self.write(&key.to_string(), value),
-            false => Err(LogError::Unsound(self.path.clone())),
+        if value.is_sound() {
+            self.write(&key.to_string(), value)
+        } else {
+            Err(LogError::Unsound(self.path.clone()))
         }
     }
 

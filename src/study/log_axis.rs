@@ -24,8 +24,7 @@ impl LogAxis {
     /// An axis that contains some positive numbers, with a small margin.
     pub fn new(values: impl Iterator<Item = f64>) -> LogAxis {
         let values = values.filter(|v| v.is_finite() && *v > 0.0);
-        let range = range(values.map(f64::log10));
-        let (low, high) = range.unwrap_or((0.0, 1.0));
+        let (low, high) = range(values.map(f64::log10)).unwrap_or((0.0, 1.0));
         let missing = 0.5 * (LEAST - (high - low)).max(0.0);
         let air = AIR * (high - low).max(LEAST) + missing;
         LogAxis {
@@ -47,28 +46,32 @@ impl LogAxis {
             &[1.0, 2.0, 5.0],
             &[1.0],
         ];
-        let found = STEPS.iter().map(|steps| self.multiples(steps, 1));
-        let mut all = found.chain((2..100).map(|every| self.multiples(&[1.0], every)));
-        all.find(|ticks| ticks.len() <= most.max(2))
+        STEPS
+            .iter()
+            .map(|steps| self.multiples(steps, 1))
+            .chain((2..100).map(|every| self.multiples(&[1.0], every)))
+            .find(|ticks| ticks.len() <= most.max(2))
             .unwrap_or_default()
     }
 
     fn multiples(self, steps: &[f64], every: i32) -> Vec<f64> {
         let decades = self.low.floor() as i32..=self.high.ceil() as i32;
-        let decades = decades.filter(|decade| decade.rem_euclid(every) == 0);
-        let all = decades.flat_map(|decade| steps.iter().map(move |step| (step, decade)));
+        let all = decades
+            .filter(|decade| decade.rem_euclid(every) == 0)
+            .flat_map(|decade| steps.iter().map(move |step| (step, decade)));
         // Formatted and parsed, so that the value equals its label.
-        let all = all.filter_map(|(step, decade)| format!("{step}e{decade}").parse::<f64>().ok());
-        all.filter(|v| (self.low..=self.high).contains(&v.log10()))
+        all.filter_map(|(step, decade)| format!("{step}e{decade}").parse::<f64>().ok())
+            .filter(|v| (self.low..=self.high).contains(&v.log10()))
             .collect()
     }
 }
 
 /// Formats a number of an axis.
 pub fn written(value: f64) -> String {
-    match (1e-3..1e5).contains(&value) {
-        true => format!("{value}"),
-        false => format!("{value:e}"),
+    if (1e-3..1e5).contains(&value) {
+        format!("{value}")
+    } else {
+        format!("{value:e}")
     }
 }
 

@@ -147,8 +147,12 @@ impl MapRun {
     /// kind in the reference's run; infinite if a number is NaN.
     pub fn difference(&self, reference: &MapRun) -> f64 {
         let scale = |kind: MonitorKind| {
-            let of_kind = reference.monitors.iter().filter(|m| m.kind == kind);
-            of_kind.map(|m| m.largest).fold(f64::MIN_POSITIVE, f64::max)
+            reference
+                .monitors
+                .iter()
+                .filter(|m| m.kind == kind)
+                .map(|m| m.largest)
+                .fold(f64::MIN_POSITIVE, f64::max)
         };
         let differences = reference
             .monitors
@@ -294,9 +298,12 @@ impl Map {
             _ => None,
         });
         let jumped = cells().filter(|cell| cell.ended.jumped > 0);
-        let signs = failed.chain(jumped.map(|_| "↯ jumped on the way".to_owned()));
-        let signs = signs.collect::<BTreeSet<_>>().into_iter();
-        let signs = signs.collect::<Vec<_>>().join("   ");
+        let signs = failed
+            .chain(jumped.map(|_| "↯ jumped on the way".to_owned()))
+            .collect::<BTreeSet<_>>()
+            .into_iter()
+            .collect::<Vec<_>>()
+            .join("   ");
         (!signs.is_empty()).then_some(signs)
     }
 
@@ -322,14 +329,15 @@ impl Map {
             0 => String::new(),
             n => format!(" and {n} more (the table has them)"),
         };
-        let compared = match names.is_empty() {
-            true => "Nothing was compared: no two runs solve the same problem.".to_owned(),
-            false => format!(
+        let compared = if names.is_empty() {
+            "Nothing was compared: no two runs solve the same problem.".to_owned()
+        } else {
+            format!(
                 "Ends are compared with those of {}{more}; wrong: a monitor differs by more than {} of the largest value \
                  of its kind.",
                 names.join("; "),
                 self.tolerance
-            ),
+            )
         };
         vec![made, compared, origin::made_by()]
     }
@@ -396,8 +404,9 @@ impl Map {
 /// The reference among some cases.
 fn reference(plan: &Plan, members: &[usize], ended: &[Option<MapRun>]) -> Option<usize> {
     let sound = |k: &usize| {
-        let ended = ended[*k].as_ref();
-        ended.is_some_and(|e| e.failed.is_none() && e.unsettled == 0)
+        ended[*k]
+            .as_ref()
+            .is_some_and(|e| e.failed.is_none() && e.unsettled == 0)
     };
     let rank = |k: &usize| {
         let case = &plan.cases[*k];

@@ -52,8 +52,7 @@ impl MemoryPool {
     /// Waits until a run of a model fits.
     pub fn take(&self, model: &Model) -> MemoryShare<'_> {
         let layout = [model.dofs.len(), model.contacts.len(), model.bodies.len()];
-        let known = self.taken().known.get(&layout).copied();
-        let bytes = known.unwrap_or_else(|| {
+        let bytes = self.taken().known.get(&layout).copied().unwrap_or_else(|| {
             let bytes = Estimate::from_model(model)
                 .with(model.settings.solver)
                 .0
@@ -66,8 +65,10 @@ impl MemoryPool {
 
     fn wait(&self, bytes: f64) -> MemoryShare<'_> {
         let full = |taken: &mut MemoryUse| taken.runs > 0 && taken.bytes + bytes > self.free;
-        let taken = self.given.wait_while(self.taken(), full);
-        let mut taken = taken.unwrap_or_else(|e| e.into_inner());
+        let mut taken = self
+            .given
+            .wait_while(self.taken(), full)
+            .unwrap_or_else(|e| e.into_inner());
         taken.bytes += bytes;
         taken.runs += 1;
         MemoryShare { pool: self, bytes }

@@ -35,9 +35,10 @@ pub fn kind(model: &Model, watched: &MonitorQuantity) -> MonitorKind {
         MonitorQuantity::Displacement { dof } => {
             // The rotation is the third unknown of a node.
             let turns = |n: usize| model.dofs.count[n] == 3 && model.dofs.first[n] + 2 == *dof;
-            match (0..model.nodes.len()).any(turns) {
-                true => MonitorKind::Rotation,
-                false => MonitorKind::Length,
+            if (0..model.nodes.len()).any(turns) {
+                MonitorKind::Rotation
+            } else {
+                MonitorKind::Length
             }
         }
         MonitorQuantity::Contact { .. } | MonitorQuantity::Reaction { .. } => MonitorKind::Force,

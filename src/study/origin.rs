@@ -35,6 +35,6 @@ pub fn processor() -> String {
         let (field, value) = line.split_once(':')?;
         (field.trim() == "model name").then(|| value.trim().to_owned())
     });
-    let name = name.filter(|name| !name.is_empty());
-    name.unwrap_or_else(|| std::env::consts::ARCH.to_owned())
+    name.filter(|name| !name.is_empty())
+        .unwrap_or_else(|| std::env::consts::ARCH.to_owned())
 }

@@ -67,8 +67,13 @@ impl Case {
     ///
     /// # Errors Never; the plan has checked all cases.
     pub fn open(&self) -> Result<Scene, SceneError> {
-        let pairs = self.of.paths.iter().zip(&self.set);
-        let settings: Vec<_> = pairs.map(|(p, v)| (p.clone(), v.clone())).collect();
+        let settings: Vec<_> = self
+            .of
+            .paths
+            .iter()
+            .zip(&self.set)
+            .map(|(p, v)| (p.clone(), v.clone()))
+            .collect();
         let scene = self.of.base.scene();
         match self.of.text.is_empty() {
             // Scenes imported from other programs have no text.
@@ -87,9 +92,12 @@ impl Case {
 
     /// Key of the scene's text, its imported meshes, and the paths selected by `counts` with their values.
     fn key(&self, counts: impl Fn(&str) -> bool) -> Key {
-        let settings = self.of.paths.iter().zip(&self.set);
-        let settings = settings.filter(|(path, _)| counts(path));
-        settings.fold(self.of.key, |key, (path, value)| key.and(path).and(value))
+        self.of
+            .paths
+            .iter()
+            .zip(&self.set)
+            .filter(|(path, _)| counts(path))
+            .fold(self.of.key, |key, (path, value)| key.and(path).and(value))
     }
 
     /// The last value set at a path, if any.
@@ -163,9 +171,12 @@ impl Plan {
 
     /// The values of a case that define its problem: all columns except those about how it is computed.
     pub(super) fn posed<'a>(&self, case: &'a Case) -> Vec<&'a str> {
-        let values = self.columns.iter().zip(&case.values);
-        let posed = values.filter(|(path, _)| poses(path));
-        posed.map(|(_, value)| value.as_str()).collect()
+        self.columns
+            .iter()
+            .zip(&case.values)
+            .filter(|(path, _)| poses(path))
+            .map(|(_, value)| value.as_str())
+            .collect()
     }
 
     /// Everything that the results depend on, by name.
@@ -180,8 +191,9 @@ impl Plan {
             parts.push(case.of.input());
         }
         let Study { set, vary, .. } = &self.study;
-        let varied = vary.iter();
-        let varied = varied.map(|vary| (format!("{} over", vary.path), vary.values.join(", ")));
+        let varied = vary
+            .iter()
+            .map(|vary| (format!("{} over", vary.path), vary.values.join(", ")));
         parts.extend(set.iter().cloned().chain(varied));
         parts
     }
@@ -196,14 +208,21 @@ impl Plan {
             self.title.clone_from(&scene.spec.title);
         }
         // Each path that is set, with the index of its setting or variation.
-        let patterns = study.set.iter().map(|(path, _)| path);
-        let patterns = patterns.chain(study.vary.iter().map(|vary| &vary.path));
+        let patterns = study
+            .set
+            .iter()
+            .map(|(path, _)| path)
+            .chain(study.vary.iter().map(|vary| &vary.path));
         let mut set: Vec<(String, usize)> = Vec::new();
         for (k, pattern) in patterns.enumerate() {
             set.extend(expanded(&known, pattern).into_iter().map(|path| (path, k)));
         }
-        let monitors = scene.model.monitors.iter();
-        let own: Vec<String> = monitors.map(|m| m.name.clone()).collect();
+        let own: Vec<String> = scene
+            .model
+            .monitors
+            .iter()
+            .map(|m| m.name.clone())
+            .collect();
         let meshes = scene
             .imports()
             .then(|| digest(&format!("{:?}", scene.spec.nodes)));

@@ -321,9 +321,10 @@ fn compare(
     let kinds = first.run.monitors.iter().cloned().zip(first.kinds.clone());
     let kinds: HashMap<String, MonitorKind> = kinds.collect();
     let kind = |name: &String| kinds.get(name).copied();
-    let wanted = match planned.chart.by.is_empty() {
-        true => &planned.chart.monitors,
-        false => &planned.chart.by,
+    let wanted = if planned.chart.by.is_empty() {
+        &planned.chart.monitors
+    } else {
+        &planned.chart.by
     };
     let counts = |name: &&String| match wanted.as_slice() {
         [] => kind(name) == Some(MonitorKind::Length),
@@ -357,9 +358,10 @@ fn compare(
         kind(name) == Some(MonitorKind::Force) && !is_zero && !precision.monitors.contains(name)
     };
     let columns = || reference.monitors.iter().enumerate();
-    let forces: Vec<(usize, &String)> = match planned.chart.by.is_empty() {
-        true => columns().filter(force).collect(),
-        false => Vec::new(),
+    let forces: Vec<(usize, &String)> = if planned.chart.by.is_empty() {
+        columns().filter(force).collect()
+    } else {
+        Vec::new()
     };
     let own = |(_, name): &(usize, &String)| precision.monitors.contains(name);
     let own: Vec<(usize, &String)> = columns().filter(own).collect();
@@ -402,9 +404,10 @@ fn compare(
                 let value = curve.at(row.leg, row.load)?.values[place];
                 Some((value - row.values[k]).abs())
             });
-            match is_force {
-                true => measured.point.force_error = Some(error),
-                false => measured.point.error = Some(error),
+            if is_force {
+                measured.point.force_error = Some(error)
+            } else {
+                measured.point.error = Some(error)
             }
         }
     }

@@ -58,12 +58,16 @@ impl ErrorPanel<'_> {
     fn new(chart: &Precision, top: f64, is_force: bool, error_on_x: bool) -> ErrorPanel<'_> {
         let of = |p: &Point| if is_force { p.force_error } else { p.error };
         let errors = chart.points.iter().filter_map(of);
-        let levels = chart.target.filter(|_| !is_force);
-        let levels = levels
+        let levels = chart
+            .target
+            .filter(|_| !is_force)
             .into_iter()
             .chain(chart.uncertainty[usize::from(is_force)]);
-        let spread = chart.points.iter().filter_map(|p| p.spread);
-        let spread = spread.filter(|_| chart.cost == Cost::Time);
+        let spread = chart
+            .points
+            .iter()
+            .filter_map(|p| p.spread)
+            .filter(|_| chart.cost == Cost::Time);
         let costs = chart.points.iter().map(|p| chart.cost.of(p));
         let rail = if error_on_x { 0.0 } else { RAIL };
         ErrorPanel {
@@ -82,17 +86,19 @@ impl ErrorPanel<'_> {
     }
 
     fn error_of(&self, point: &Point) -> Option<f64> {
-        match self.is_force {
-            true => point.force_error,
-            false => point.error,
+        if self.is_force {
+            point.force_error
+        } else {
+            point.error
         }
     }
 
     /// The point at these fractions of the two axes.
     fn at_parts(&self, cost: f64, error: f64) -> (f64, f64) {
-        match self.error_on_x {
-            true => self.axes.at(error, cost),
-            false => self.axes.at(cost, error),
+        if self.error_on_x {
+            self.axes.at(error, cost)
+        } else {
+            self.axes.at(cost, error)
         }
     }
 
@@ -117,18 +123,15 @@ impl ErrorPanel<'_> {
         let (left, right) = (self.axes.left, self.axes.left + self.axes.size.0);
         let (top, bottom) = (self.axes.top, self.axes.top + self.axes.size.1);
         let colour = (250, 240, 240);
-        let words = match self.error_on_x {
-            true => {
-                sheet.bar((right + 6.0, top), (RAIL - 6.0, bottom - top), colour);
-                (
-                    (right + 0.5 * RAIL + 3.0, bottom + 0.8 * LABEL),
-                    Anchor::Middle,
-                )
-            }
-            false => {
-                sheet.bar((left, top - RAIL), (right - left, RAIL - 6.0), colour);
-                ((left - 8.0, top - 0.5 * RAIL - 3.0), Anchor::Right)
-            }
+        let words = if self.error_on_x {
+            sheet.bar((right + 6.0, top), (RAIL - 6.0, bottom - top), colour);
+            (
+                (right + 0.5 * RAIL + 3.0, bottom + 0.8 * LABEL),
+                Anchor::Middle,
+            )
+        } else {
+            sheet.bar((left, top - RAIL), (right - left, RAIL - 6.0), colour);
+            ((left - 8.0, top - 0.5 * RAIL - 3.0), Anchor::Right)
         };
         sheet.text(words.0, "failed", SMALL, BLACK, words.1);
         self.draw_axes(sheet);
@@ -143,8 +146,14 @@ impl ErrorPanel<'_> {
             let words = format!("error bar of the reference: {}", sig2(bar));
             self.level(sheet, bar, &words, &mut taken)?;
         }
-        let errors = self.chart.points.iter().filter_map(|p| self.error_of(p));
-        if errors.fold(f64::INFINITY, f64::min) < ROUND_OFF {
+        if self
+            .chart
+            .points
+            .iter()
+            .filter_map(|p| self.error_of(p))
+            .fold(f64::INFINITY, f64::min)
+            < ROUND_OFF
+        {
             let least = written(short(ROUND_OFF));
             let words = format!("round-off: below {least}, treated as equal");
             self.level(sheet, ROUND_OFF, &words, &mut taken)?;
@@ -175,12 +184,11 @@ impl ErrorPanel<'_> {
         let (from, to) = (self.at_parts(0.0, part), self.at_parts(1.0, part));
         sheet.dashed(&[from, to], 1.2, GREY);
         let wide = widest([words], SMALL)?;
-        let middle = match self.error_on_x {
-            true => {
-                let most = LEFT + PLOT.0 - RAIL - 4.0 - 0.5 * wide;
-                ((from.0 + 6.0 + 0.5 * wide).min(most), from.1 - 12.0)
-            }
-            false => (to.0 - 4.0 - 0.5 * wide, to.1 - 9.0),
+        let middle = if self.error_on_x {
+            let most = LEFT + PLOT.0 - RAIL - 4.0 - 0.5 * wide;
+            ((from.0 + 6.0 + 0.5 * wide).min(most), from.1 - 12.0)
+        } else {
+            (to.0 - 4.0 - 0.5 * wide, to.1 - 9.0)
         };
         let size = (wide, 1.2 * SMALL);
         sheet.text(middle, words, SMALL, GREY, Anchor::Middle);
@@ -199,20 +207,18 @@ impl ErrorPanel<'_> {
             (false, some) => format!("error of {} (relative to the largest)", some.join(", ")),
         };
         let numbers = |axis: LogAxis, most| {
-            let ticks = axis.ticks(most).into_iter();
-            ticks.map(move |value| (axis.part(value), written(value)))
+            axis.ticks(most)
+                .into_iter()
+                .map(move |value| (axis.part(value), written(value)))
         };
         let cost = chart.cost.axis();
-        match self.error_on_x {
-            true => {
-                let x = (error.as_str(), numbers(self.error, 9));
-                self.axes.draw(sheet, x, (cost, numbers(self.cost, 12)));
-            }
-            false => {
-                let x = (cost, numbers(self.cost, 9));
-                self.axes
-                    .draw(sheet, x, (error.as_str(), numbers(self.error, 12)));
-            }
+        if self.error_on_x {
+            let x = (error.as_str(), numbers(self.error, 9));
+            self.axes.draw(sheet, x, (cost, numbers(self.cost, 12)));
+        } else {
+            let x = (cost, numbers(self.cost, 9));
+            self.axes
+                .draw(sheet, x, (error.as_str(), numbers(self.error, 12)));
         }
     }
 
@@ -258,9 +264,10 @@ impl ErrorPanel<'_> {
                 sheet.line(&[self.at(least, error), self.at(most, error)], 1.0, GREY);
             }
             let place = self.place(point);
-            match point.failed.is_some() {
-                true => sheet.cross(place, 5.0, CROSS),
-                false => sheet.series_marker(place, k),
+            if point.failed.is_some() {
+                sheet.cross(place, 5.0, CROSS)
+            } else {
+                sheet.series_marker(place, k)
             }
             taken.take(Patch::about(place, (14.0, 14.0)));
         }
@@ -270,9 +277,13 @@ impl ErrorPanel<'_> {
     fn triangle(&self, sheet: &mut Sheet, taken: &mut OccupiedArea) -> Option<String> {
         let chart = self.chart;
         let mut steps = (0..chart.series.len()).filter_map(|k| {
-            let own = chart.points.iter().filter(|p| p.series == k);
-            let own = own.filter_map(|p| Some((chart.cost.of(p), self.error_of(p)?)));
-            let mut own: Vec<(f64, f64)> = own.filter(|p| p.0 > 0.0 && p.1 > ROUND_OFF).collect();
+            let mut own: Vec<(f64, f64)> = chart
+                .points
+                .iter()
+                .filter(|p| p.series == k)
+                .filter_map(|p| Some((chart.cost.of(p), self.error_of(p)?)))
+                .filter(|p| p.0 > 0.0 && p.1 > ROUND_OFF)
+                .collect();
             own.sort_by(|a, b| a.0.total_cmp(&b.0));
             let falls =
                 |pair: &[(f64, f64)]| pair[1].0 > pair[0].0 && (1.0 + TIE) * pair[1].1 < pair[0].1;
@@ -292,16 +303,18 @@ impl ErrorPanel<'_> {
             (x + 10.0, y - 10.0)
         };
         let (from, to) = (corner(0.25), corner(0.75));
-        let third = match self.error_on_x {
-            true => (from.0, to.1),
-            false => (to.0, from.1),
+        let third = if self.error_on_x {
+            (from.0, to.1)
+        } else {
+            (to.0, from.1)
         };
         sheet.line(&[from, third, to, from], 1.2, BLACK);
         let horizontal = (0.5 * (from.0 + to.0), third.1 - 8.0);
         let vertical = (third.0 + 8.0, 0.5 * (from.1 + to.1));
-        let (one, falls) = match self.error_on_x {
-            true => (vertical, horizontal),
-            false => (horizontal, vertical),
+        let (one, falls) = if self.error_on_x {
+            (vertical, horizontal)
+        } else {
+            (horizontal, vertical)
         };
         sheet.text(one, "1", SMALL, BLACK, Anchor::Middle);
         let anchor = if self.error_on_x {
@@ -353,9 +366,10 @@ impl ErrorPanel<'_> {
                 break;
             }
         }
-        match key.is_empty() {
-            true => Ok(key),
-            false => Ok(vec![key.join(";  ")]),
+        if key.is_empty() {
+            Ok(key)
+        } else {
+            Ok(vec![key.join(";  ")])
         }
     }
 

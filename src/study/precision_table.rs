@@ -36,8 +36,11 @@ pub fn read(
     target: Option<f64>,
 ) -> Result<Vec<Precision>, TableError> {
     let table = Table::read(name, text)?;
-    let about = table.comments().map(|line| shown::cut(line, MOST_COMMENT));
-    let about: Vec<String> = about.take(MOST_COMMENTS).collect();
+    let about: Vec<String> = table
+        .comments()
+        .map(|line| shown::cut(line, MOST_COMMENT))
+        .take(MOST_COMMENTS)
+        .collect();
     let heads = table.heads();
     for wanted in ["scene", "series", "run", "status", "error", "seconds"] {
         if !heads.contains(&wanted) {
@@ -92,11 +95,14 @@ pub fn read(
         let Some(chart) = charts.last_mut() else {
             continue;
         };
-        let series = chart.series.iter().position(|name| name == own);
-        let series = series.unwrap_or_else(|| {
-            chart.series.push(own.to_owned());
-            chart.series.len() - 1
-        });
+        let series = chart
+            .series
+            .iter()
+            .position(|name| name == own)
+            .unwrap_or_else(|| {
+                chart.series.push(own.to_owned());
+                chart.series.len() - 1
+            });
         for (head, bar) in ["uncertainty", "force_uncertainty"]
             .iter()
             .zip(&mut chart.uncertainty)

@@ -81,8 +81,10 @@ impl Vary {
         let Some((path, values)) = text.split_once('=') else {
             return Err(NoVary::NoValues);
         };
-        let values = values.split(',').map(|value| spread(value.trim()));
-        let values: Result<Vec<Vec<String>>, NoVary> = values.collect();
+        let values: Result<Vec<Vec<String>>, NoVary> = values
+            .split(',')
+            .map(|value| spread(value.trim()))
+            .collect();
         Ok(Vary {
             path: path.trim().to_owned(),
             values: values?.concat(),
@@ -103,16 +105,20 @@ fn spread(value: &str) -> Result<Vec<String>, NoVary> {
     };
     let number = |text: &str| text.parse::<f64>().ok().filter(|x| x.is_finite());
     let (low, high) = number(low).zip(number(high)).ok_or_else(wrong)?;
-    let count = count.parse::<u32>().ok().filter(|n| (2..=1000).contains(n));
-    let count = count.ok_or_else(wrong)?;
+    let count = count
+        .parse::<u32>()
+        .ok()
+        .filter(|n| (2..=1000).contains(n))
+        .ok_or_else(wrong)?;
     if even_ratios && !(low > 0.0 && high > 0.0) {
         return Err(NoVary::NoRatios(value.to_owned()));
     }
     let at = |k: u32| {
         let part = f64::from(k) / f64::from(count - 1);
-        let value = match even_ratios {
-            true => low * (high / low).powf(part),
-            false => low + (high - low) * part,
+        let value = if even_ratios {
+            low * (high / low).powf(part)
+        } else {
+            low + (high - low) * part
         };
         // Formatted as typed, without the round-off of the division.
         format!("{value:.9e}")
@@ -288,9 +294,10 @@ impl Visitor<'_> for WordVisitor {
     }
 
     fn visit_f64<E: serde::de::Error>(self, number: f64) -> Result<Word, E> {
-        match number.is_finite() {
-            true => Ok(Word(format!("{number:?}"))),
-            false => Err(E::custom("the number must be finite")),
+        if number.is_finite() {
+            Ok(Word(format!("{number:?}")))
+        } else {
+            Err(E::custom("the number must be finite"))
         }
     }
 
@@ -312,8 +319,10 @@ impl From<(String, Vec<Word>)> for Vary {
 
 /// Settings in a file: path and value of each.
 pub(super) fn pairs<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<(String, String)>, D::Error> {
-    let words = Vec::<(String, Word)>::deserialize(from)?.into_iter();
-    Ok(words.map(|(path, word)| (path, word.0)).collect())
+    Ok(Vec::<(String, Word)>::deserialize(from)?
+        .into_iter()
+        .map(|(path, word)| (path, word.0))
+        .collect())
 }
 
 /// Parses a file that contains one value.

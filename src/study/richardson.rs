@@ -23,15 +23,16 @@ pub fn limit(
         let [a, b] = [first, second].map(|run| run.at(row.leg, row.load));
         Some([a?.values.clone(), b?.values.clone(), row.values.clone()])
     };
-    let rows = third.rows.iter().filter(|row| counts(row.leg, row.load));
-    let rows: Vec<_> = rows
+    let rows: Vec<_> = third
+        .rows
+        .iter()
+        .filter(|row| counts(row.leg, row.load))
         .filter_map(|row| Some((row.leg, row.load, at(row)?)))
         .collect();
     let change = |k: usize, from: usize| {
-        let changes = rows
-            .iter()
-            .map(|(.., u)| (u[from + 1][k] - u[from][k]).abs());
-        changes.fold(0.0, f64::max)
+        rows.iter()
+            .map(|(.., u)| (u[from + 1][k] - u[from][k]).abs())
+            .fold(0.0, f64::max)
     };
     let order = |k: usize| {
         let order = (change(k, 0) / change(k, 1)).ln() / ratio.ln();
@@ -39,14 +40,17 @@ pub fn limit(
     };
     let orders: Vec<Option<f64>> = (0..third.monitors.len()).map(order).collect();
     let point = |(leg, load, [_, second, third]): &(usize, f64, [Vec<f64>; 3])| {
-        let all = second.iter().zip(third).zip(&orders);
-        let all = all.map(|((u2, u3), order)| match order {
-            Some(order) => {
-                let rest = (u3 - u2) / (ratio.powf(*order) - 1.0);
-                (u3 + rest, SAFETY * rest.abs())
-            }
-            None => (*u3, SAFETY * (u3 - u2).abs()),
-        });
+        let all = second
+            .iter()
+            .zip(third)
+            .zip(&orders)
+            .map(|((u2, u3), order)| match order {
+                Some(order) => {
+                    let rest = (u3 - u2) / (ratio.powf(*order) - 1.0);
+                    (u3 + rest, SAFETY * rest.abs())
+                }
+                None => (*u3, SAFETY * (u3 - u2).abs()),
+            });
         let (values, bars) = all.unzip();
         ReferencePoint {
             leg: *leg,

@@ -129,9 +129,12 @@ pub fn ranges(numbers: &[usize], most: usize) -> String {
             _ => ranges.push((number, number)),
         }
     }
-    let word = |&(first, last): &(usize, usize)| match first == last {
-        true => first.to_string(),
-        false => format!("{first} to {last}"),
+    let word = |&(first, last): &(usize, usize)| {
+        if first == last {
+            first.to_string()
+        } else {
+            format!("{first} to {last}")
+        }
     };
     let words: Vec<String> = ranges.iter().take(most).map(word).collect();
     let more = match ranges.len().saturating_sub(most) {

@@ -49,9 +49,11 @@ pub struct Tally {
 /// The problems of a population as cells of a sweep.
 pub fn sweep<'a>(population: &'a Population, variants: &'a [Variant]) -> Sweep<'a, JudgedProblem> {
     let name = population.name();
-    let settings = variants.iter().flat_map(|v| &v.settings);
-    let settings = settings.flat_map(|(path, value)| [path.as_str(), value]);
-    let settings: Vec<&str> = settings.collect();
+    let settings: Vec<&str> = variants
+        .iter()
+        .flat_map(|v| &v.settings)
+        .flat_map(|(path, value)| [path.as_str(), value])
+        .collect();
     let cell = |k: usize| {
         let parts = [name.as_str(), &k.to_string()];
         let key = Key::from_parts(parts.into_iter().chain(settings.iter().copied()));
@@ -90,8 +92,10 @@ pub fn sweep<'a>(population: &'a Population, variants: &'a [Variant]) -> Sweep<'
 impl Survey {
     /// The completed problems, with their numbers.
     pub fn done(&self) -> impl Iterator<Item = (usize, &JudgedProblem)> {
-        let all = self.judged.iter().enumerate();
-        all.filter_map(|(k, judged)| Some((k, judged.as_ref()?)))
+        self.judged
+            .iter()
+            .enumerate()
+            .filter_map(|(k, judged)| Some((k, judged.as_ref()?)))
     }
 
     /// Counts the verdicts of variant number `v` on the problems selected by `selected`.

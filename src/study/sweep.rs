@@ -207,8 +207,8 @@ impl<T: Outcome> Store<T> {
     }
 
     fn merge(&mut self, paths: &[PathBuf], sweep: &Sweep<'_, T>) -> Result<(), LogError> {
-        let keys = sweep.cells.iter().map(|cell| cell.key);
-        let numbers: HashMap<Key, usize> = keys.zip(0..).collect();
+        let numbers: HashMap<Key, usize> =
+            sweep.cells.iter().map(|cell| cell.key).zip(0..).collect();
         let mut places: HashMap<Key, usize> = HashMap::new();
         for (file, path) in paths.iter().enumerate() {
             let content = log::read::<T>(path, &sweep.input)?;

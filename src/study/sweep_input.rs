@@ -60,17 +60,22 @@ impl Input {
                 theirs.what, self.what
             ));
         }
-        let pairs = self.parts.iter().zip(&theirs.parts);
-        let other = pairs.into_iter().find(|(ours, theirs)| ours != theirs);
+        let other = self
+            .parts
+            .iter()
+            .zip(&theirs.parts)
+            .into_iter()
+            .find(|(ours, theirs)| ours != theirs);
         let cut = |text: &str| shown::cut(text, SHOWN).to_string();
         if let Some(((name, ours), (their_name, theirs))) = other {
-            return Some(match name == their_name {
-                true => format!(
+            return Some(if name == their_name {
+                format!(
                     "its results have a different {name}: {} instead of {}",
                     cut(theirs),
                     cut(ours)
-                ),
-                false => format!("its results have {their_name} instead of {name}"),
+                )
+            } else {
+                format!("its results have {their_name} instead of {name}")
             });
         }
         (self.parts.len() != theirs.parts.len())

@@ -77,10 +77,12 @@ impl Outcome for JudgedProblem {
     /// A violation may be infinite without an end, but is within the tolerance if right.
     fn is_sound(&self) -> bool {
         let right = |trial: &Trial| trial.verdict == RunVerdict::Right;
-        let mut trials = self.trials.iter();
-        trials.all(|trial| match right(trial) {
-            true => trial.violation <= TOLERANCE,
-            false => !trial.violation.is_nan(),
+        self.trials.iter().all(|trial| {
+            if right(trial) {
+                trial.violation <= TOLERANCE
+            } else {
+                !trial.violation.is_nan()
+            }
         })
     }
 
@@ -214,9 +216,10 @@ fn one(problem: &Problem, stepper: &mut Stepper) -> Trial {
     match end {
         RunEnd::Finished => {
             trial.violation = violation(problem, stepper);
-            trial.verdict = match trial.violation <= TOLERANCE {
-                true => RunVerdict::Right,
-                false => RunVerdict::Wrong,
+            trial.verdict = if trial.violation <= TOLERANCE {
+                RunVerdict::Right
+            } else {
+                RunVerdict::Wrong
             };
         }
         RunEnd::Failed(failure) => trial.verdict = RunVerdict::from_failure(&failure),
@@ -269,14 +272,18 @@ fn broken(problem: &Problem, u: &[f64], f: &[f64]) -> f64 {
     let mut length = size(&mut gaps.chain(u.iter().copied()).chain(all().map(free)));
     let mut force = size(&mut all().map(acts).chain(f.iter().copied()));
     // If everything is zero, there is no reference size.
-    match stiff {
-        true => force = force.max(size(&mut all().map(product))),
-        false => length = length.max(size(&mut all().map(product))),
+    if stiff {
+        force = force.max(size(&mut all().map(product)))
+    } else {
+        length = length.max(size(&mut all().map(product)))
     }
     let (length, force) = (length.max(f64::MIN_POSITIVE), force.max(f64::MIN_POSITIVE));
-    let balance = all().map(|i| match stiff {
-        true => (product(i) - acts(i)).abs() / force,
-        false => (u[i] - free(i) - product(i)).abs() / length,
+    let balance = all().map(|i| {
+        if stiff {
+            (product(i) - acts(i)).abs() / force
+        } else {
+            (u[i] - free(i) - product(i)).abs() / length
+        }
     });
     let balance = balance.fold(0.0, f64::max);
     let contacts = problem.contacts.iter().enumerate().map(|(k, contact)| {
@@ -285,17 +292,19 @@ fn broken(problem: &Problem, u: &[f64], f: &[f64]) -> f64 {
         let normal = (-g).max(-p).max(g.min(p));
         let limit = contact.friction.coefficient() * p.max(0.0) + contact.friction.cohesion / force;
         let slip = -u[2 * k + 1] / length;
-        let tangential = match g > TOLERANCE {
-            true => t.abs(),
-            false => (t.abs() - limit).max(slip.abs().min((t - limit * slip.signum()).abs())),
+        let tangential = if g > TOLERANCE {
+            t.abs()
+        } else {
+            (t.abs() - limit).max(slip.abs().min((t - limit * slip.signum()).abs()))
         };
         normal.max(tangential)
     });
     let worst = contacts.fold(balance, f64::max);
     // NaN is not a solution, but a maximum ignores it.
-    match u.iter().chain(f).all(|v| v.is_finite()) {
-        true => worst,
-        false => f64::INFINITY,
+    if u.iter().chain(f).all(|v| v.is_finite()) {
+        worst
+    } else {
+        f64::INFINITY
     }
 }
 

@@ -130,9 +130,10 @@ pub fn bars(survey: &Survey) -> Result<Sheet, PlotError> {
         for (k, (part, verdict)) in parts.into_iter().zip(kinds).enumerate() {
             let thousand = tally.per_thousand(part);
             let width = BAR * thousand / 1000.0;
-            let text = match width > 18.0 {
-                true => verdict.glyph().to_string(),
-                false => String::new(),
+            let text = if width > 18.0 {
+                verdict.glyph().to_string()
+            } else {
+                String::new()
             };
             letter(&mut sheet, (x, y + 3.0), (width, ROW - 6.0), verdict, &text);
             let at = (numbers + 52.0 * (k + 1) as f64, y + 0.5 * ROW);

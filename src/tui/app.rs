@@ -329,9 +329,10 @@ impl App {
 
     /// Text pasted from the terminal goes only into an open input line, since elsewhere keys are commands.
     pub fn paste(&mut self, text: &str) {
-        match self.ahead.is_any() {
-            true => self.ahead.push(QueuedInput::Paste(text.into()), None),
-            false => self.take_paste(text),
+        if self.ahead.is_any() {
+            self.ahead.push(QueuedInput::Paste(text.into()), None)
+        } else {
+            self.take_paste(text)
         }
     }
 
@@ -370,16 +371,20 @@ impl App {
             (self.colours, self.finds_colours) = (colours, false);
             self.theme = Theme::chosen(colours);
         }
-        match overruled && self.colours != Colours::None {
-            true => self.complain("no colours: the environment sets NO_COLOR"),
-            false => self.say(format!("colours: {}", self.colours.word())),
+        if overruled && self.colours != Colours::None {
+            self.complain("no colours: the environment sets NO_COLOR")
+        } else {
+            self.say(format!("colours: {}", self.colours.word()))
         }
     }
 
     /// Names of the built-in scenes.
     pub(super) fn scenes(&self) -> Vec<String> {
-        let own = self.offers.iter().filter(|offer| offer.is_scene());
-        own.map(|offer| offer.name.clone()).collect()
+        self.offers
+            .iter()
+            .filter(|offer| offer.is_scene())
+            .map(|offer| offer.name.clone())
+            .collect()
     }
 
     /// Handles Ctrl-C: closes overlays and stops a run, but never quits the program.
@@ -395,9 +400,10 @@ impl App {
         if works || self.measuring.is_some() || self.loading.is_some() {
             return Some(Effect::Interrupt);
         }
-        self.say(match waited {
-            true => "queued keys discarded",
-            false => "nothing is running; q quits",
+        self.say(if waited {
+            "queued keys discarded"
+        } else {
+            "nothing is running; q quits"
         });
         None
     }
@@ -553,9 +559,10 @@ impl App {
             Ui::CommandLine => self.overlay = Overlay::line(Purpose::Command, ""),
             Ui::Log => {
                 let finished = view.is_some_and(|view| view.model.finished.is_some());
-                self.overlay = Overlay::solver(match finished {
-                    true => solver::Page::Run,
-                    false => solver::Page::Log,
+                self.overlay = Overlay::solver(if finished {
+                    solver::Page::Run
+                } else {
+                    solver::Page::Log
                 });
             }
             Ui::Parameters => self.overlay = Overlay::solver(solver::Page::Parameters),
@@ -565,9 +572,10 @@ impl App {
             Ui::Colours(colours) => self.colour(colours),
             Ui::Mouse(on) => {
                 self.mouse = on.unwrap_or(!self.mouse);
-                self.say(match self.mouse {
-                    true => "mouse on: click selects, wheel scrolls; :mouse off turns it off",
-                    false => "mouse off; :mouse on turns it on",
+                self.say(if self.mouse {
+                    "mouse on: click selects, wheel scrolls; :mouse off turns it off"
+                } else {
+                    "mouse off; :mouse on turns it on"
                 });
                 return Some(Effect::Mouse(self.mouse));
             }

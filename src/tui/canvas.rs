@@ -111,9 +111,13 @@ pub fn use_octants(buffer: &mut Buffer) {
         let Some(bits) = sign.checked_sub(0x2800).filter(|bits| *bits < 256) else {
             continue;
         };
-        let rows = BITS.as_flattened().iter().enumerate();
-        let set = rows.filter(|(_, bit)| bits & u32::from(**bit) != 0);
-        let place: usize = set.map(|(k, _)| 1 << k).sum();
+        let place: usize = BITS
+            .as_flattened()
+            .iter()
+            .enumerate()
+            .filter(|(_, bit)| bits & u32::from(**bit) != 0)
+            .map(|(k, _)| 1 << k)
+            .sum();
         cell.set_char(OCTANTS[place]);
     }
 }

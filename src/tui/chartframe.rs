@@ -72,9 +72,10 @@ impl ChartFrame {
         let x = usize::from(self.field.x) + column;
         let y = f64::from(self.field.y) + height.floor();
         let inside = x < usize::from(self.field.right()) && y < f64::from(self.field.bottom());
-        match inside {
-            true => buffer.cell_mut((x as u16, y as u16)),
-            false => None,
+        if inside {
+            buffer.cell_mut((x as u16, y as u16))
+        } else {
+            None
         }
     }
 

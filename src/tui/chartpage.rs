@@ -93,15 +93,18 @@ impl ChartPage {
 
     /// Whether any run of the shown chart has an error of the contact forces.
     fn has_forces(&self) -> bool {
-        let mut points = self.shown().points.iter();
-        points.any(|point| point.force_error.is_some())
+        self.shown()
+            .points
+            .iter()
+            .any(|point| point.force_error.is_some())
     }
 
     /// The shown error of a run.
     pub(super) fn error(&self, point: &Point) -> Option<f64> {
-        match self.is_force && self.has_forces() {
-            true => point.force_error,
-            false => point.error,
+        if self.is_force && self.has_forces() {
+            point.force_error
+        } else {
+            point.error
         }
     }
 

@@ -69,8 +69,8 @@ impl Chooser {
     pub fn left<'a>(&self, offers: &'a [Offer]) -> Vec<&'a Offer> {
         let typed = self.typed.to_lowercase();
         let has = |offer: &&Offer| {
-            let all = format!("{} {} {}", offer.name, offer.title, offer.group.title());
-            let all = all.to_lowercase();
+            let all =
+                format!("{} {} {}", offer.name, offer.title, offer.group.title()).to_lowercase();
             typed.split_whitespace().all(|word| all.contains(word))
         };
         offers.iter().filter(has).collect()
@@ -260,8 +260,11 @@ pub fn files(folder: &Path) -> Vec<Offer> {
         let name = entry.file_name().into_string().ok()?;
         (wanted && !name.starts_with('.')).then_some(name)
     };
-    let entries = entries.take(LOOKED_AT).filter_map(Result::ok);
-    let mut names: Vec<String> = entries.filter_map(name).collect();
+    let mut names: Vec<String> = entries
+        .take(LOOKED_AT)
+        .filter_map(Result::ok)
+        .filter_map(name)
+        .collect();
     names.sort();
     names.truncate(MOST);
     let offer = |name| Offer {

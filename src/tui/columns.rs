@@ -26,9 +26,10 @@ pub fn around(
     room: usize,
     ruled: impl Fn(usize) -> bool,
 ) -> Vec<Column> {
-    let (few, rules) = match count <= room {
-        true => (count.max(1), (0..count).filter(|at| ruled(*at)).count()),
-        false => (room.max(1), 0),
+    let (few, rules) = if count <= room {
+        (count.max(1), (0..count).filter(|at| ruled(*at)).count())
+    } else {
+        (room.max(1), 0)
     };
     let pitch = (room.saturating_sub(rules) / few).clamp(1, WIDEST);
     let width = |at: usize| pitch + usize::from(ruled(at));

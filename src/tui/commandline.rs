@@ -129,11 +129,18 @@ impl CommandLine {
     pub fn lines(&self, prompt: &str, width: usize, theme: &Theme) -> paint::Lines {
         let cursor = theme.text.add_modifier(Modifier::REVERSED);
         let at = self.input.cursor();
-        let typed = self.text().chars().chain([' ']).enumerate();
-        let typed = typed.map(|(place, letter)| match place == at {
-            true => (letter, cursor),
-            false => (letter, theme.text),
-        });
+        let typed = self
+            .text()
+            .chars()
+            .chain([' '])
+            .enumerate()
+            .map(|(place, letter)| {
+                if place == at {
+                    (letter, cursor)
+                } else {
+                    (letter, theme.text)
+                }
+            });
         let mut rows: Vec<Vec<Span>> = vec![Vec::new()];
         let mut used = 0;
         for (letter, style) in prompt.chars().map(|c| (c, theme.key)).chain(typed) {
@@ -204,11 +211,12 @@ impl CommandLine {
                 )
             }
             None => {
-                let names = context
+                let names: Vec<&str> = context
                     .offers
                     .into_iter()
-                    .flat_map(|offers| &offers.parameters);
-                let names: Vec<&str> = names.map(|known| known.name.as_str()).collect();
+                    .flat_map(|offers| &offers.parameters)
+                    .map(|known| known.name.as_str())
+                    .collect();
                 format!(
                     "{} NAME VALUE   names: {}   (details: :parameters)",
                     entry.name,
@@ -286,8 +294,11 @@ fn completions<'a>(
         }
     }
     let first = (here + 1).saturating_sub(COMPLETIONS);
-    let shown = rows.into_iter().skip(first).take(COMPLETIONS);
-    shown.map(Line::from).collect()
+    rows.into_iter()
+        .skip(first)
+        .take(COMPLETIONS)
+        .map(Line::from)
+        .collect()
 }
 
 /// The current keys of an action in brackets; empty if it has none.
@@ -296,9 +307,10 @@ fn keys(entry: &'static ActionEntry, context: &Context) -> String {
         Some(keymap) => keymap.keys(entry).collect::<Vec<_>>().join(" "),
         None => entry.keys.join(" "),
     };
-    match keys.is_empty() {
-        true => keys,
-        false => format!("[{keys}]   "),
+    if keys.is_empty() {
+        keys
+    } else {
+        format!("[{keys}]   ")
     }
 }
 
@@ -312,9 +324,12 @@ fn choices(text: &str, context: &Context) -> String {
                     .entry(name.trim())
                     .is_ok_and(|entry| entry.offered(context).is_err())
             };
-            let words = found.iter().map(|name| match grey(name) {
-                true => format!("({})", name.trim()),
-                false => name.clone(),
+            let words = found.iter().map(|name| {
+                if grey(name) {
+                    format!("({})", name.trim())
+                } else {
+                    name.clone()
+                }
             });
             words.collect::<Vec<_>>().join("  ")
         }

@@ -48,8 +48,9 @@ impl Scale {
     fn new(points: &[Point], rows: u16) -> Self {
         let all = points.iter().flat_map(Point::numbers);
         let logs = || {
-            let sound = all.clone().filter(|v| v.is_finite() && *v > 0.0);
-            sound.map(f64::log10)
+            all.clone()
+                .filter(|v| v.is_finite() && *v > 0.0)
+                .map(f64::log10)
         };
         let zero = points
             .iter()
@@ -125,8 +126,11 @@ pub fn draw(buffer: &mut Buffer, area: Rect, points: &[Point], theme: &Theme) {
     canvas.render(buffer);
     for (index, point) in shown.iter().enumerate() {
         let at = |value: f64| (column(index), scale.height(value));
-        let limits = [Some(point.limit), point.other_limit].into_iter().flatten();
-        for value in limits.filter(|limit| !limit.is_nan()) {
+        for value in [Some(point.limit), point.other_limit]
+            .into_iter()
+            .flatten()
+            .filter(|limit| !limit.is_nan())
+        {
             limit(buffer, frame, at(value), spread, theme);
         }
         if !point.other.is_nan() {

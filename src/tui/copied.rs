@@ -14,9 +14,10 @@ pub fn row(app: &App, view: &View) -> Result<NamedText, String> {
     if view.model.contacts.is_empty() {
         return Err("this scene has no slave nodes".into());
     }
-    let next = match app.learning.hides(view, slave) {
-        true => "?",
-        false => names::mode(view.mode(slave)),
+    let next = if app.learning.hides(view, slave) {
+        "?"
+    } else {
+        names::mode(view.mode(slave))
     };
     let name = view.slave(slave);
     let before = names::mode(view.mode_before(slave));
@@ -46,8 +47,11 @@ pub fn value(quantity: WatchQuantity, app: &App, view: &View) -> Result<NamedTex
 /// The load and the shown monitor at the last accepted increment.
 pub fn monitored(app: &App, view: &View) -> Result<NamedText, String> {
     let at = app.watched(view);
-    let monitor = view.model.monitors.get(at);
-    let monitor = monitor.ok_or("this scene has no monitors")?;
+    let monitor = view
+        .model
+        .monitors
+        .get(at)
+        .ok_or("this scene has no monitors")?;
     let frames = &view.frames[..=view.cursor];
     let frame = frames.iter().rev().find(|frame| frame.monitors.is_some());
     let value = frame.and_then(|frame| frame.monitors.as_ref()?.get(at).copied());

@@ -46,8 +46,11 @@ impl App {
 }
 
 fn last_line(app: &App) -> Result<NamedText, String> {
-    let line = app.history.last().cloned();
-    let line = line.ok_or("no command in the history yet; press : to type one")?;
+    let line = app
+        .history
+        .last()
+        .cloned()
+        .ok_or("no command in the history yet; press : to type one")?;
     Ok(("the command".into(), line))
 }
 

@@ -502,9 +502,10 @@ impl Debugger {
             session.journal_mut().write_to_default_path();
         }
         self.app.opened();
-        match resumed {
-            true => self.app.say("resumed from its journal, which continues"),
-            false => greet(&mut self.app, &session),
+        if resumed {
+            self.app.say("resumed from its journal, which continues")
+        } else {
+            greet(&mut self.app, &session)
         }
         self.replace_session(session);
     }

@@ -272,9 +272,10 @@ fn with_lesson(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
         let decision = (below.height / 2).clamp(SHORT_DECISION, DECISION + 1);
         let [decision, shape] = top(below, decision);
         // A chart with the focus replaces the shape.
-        let other = match choice.panes.focus == choice.panes.chart {
-            true => choice.panes.chart,
-            false => Pane::Shape,
+        let other = if choice.panes.focus == choice.panes.chart {
+            choice.panes.chart
+        } else {
+            Pane::Shape
         };
         return vec![
             (Pane::Nodes, nodes),

@@ -185,9 +185,10 @@ impl Learning {
             edition: now,
             top: visible.from,
             // Lines that were skipped have not been read.
-            seen: match visible.from <= before {
-                true => before.max(visible.to),
-                false => before,
+            seen: if visible.from <= before {
+                before.max(visible.to)
+            } else {
+                before
             },
         };
     }
@@ -204,9 +205,10 @@ impl Learning {
 
     /// Rejects actions that continue the lesson until its text has been shown.
     pub(super) fn check_read(&self, visible: Option<VisibleLines>) -> Result<(), LessonRefusal> {
-        match self.is_unread(visible) {
-            true => Err(LessonRefusal::Unread),
-            false => Ok(()),
+        if self.is_unread(visible) {
+            Err(LessonRefusal::Unread)
+        } else {
+            Ok(())
         }
     }
 }

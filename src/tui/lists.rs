@@ -132,9 +132,10 @@ impl App {
 
     /// Enter in the remedies: applies the selected one, or tries all if there is no result yet.
     pub(super) fn take_remedy(&mut self, view: Option<&View>) -> Option<Effect> {
-        match view.is_some_and(View::has_tried) {
-            false => self.ask_page(Pane::Remedies, view),
-            true => self.apply(self.remedy, view),
+        if view.is_some_and(View::has_tried) {
+            self.apply(self.remedy, view)
+        } else {
+            self.ask_page(Pane::Remedies, view)
         }
     }
 
@@ -172,13 +173,10 @@ impl App {
         };
         if background.is_trying() || tried.place != here {
             let (branch, step) = tried.place;
-            self.complain(match background.is_trying() {
-                true => "remedies are still being tried; Ctrl-C stops them".into(),
-                false => format!(
+            self.complain(if background.is_trying() { "remedies are still being tried; Ctrl-C stops them".into() } else { format!(
                     "these remedies were tried from step {step} of b{}; go there, or press r to try them here",
                     branch + 1
-                ),
-            });
+                ) });
             return None;
         }
         if let RemedyInput::Restart(_) = &trial.how {
@@ -233,8 +231,9 @@ impl App {
         {
             return self.submit(Command::Goto { step: to }, view);
         }
-        let answers = view.and_then(|view| view.examination()?);
-        let answers = answers.map(|page| choices(page) + page.below.len());
+        let answers = view
+            .and_then(|view| view.examination()?)
+            .map(|page| choices(page) + page.below.len());
         let list = match self.panes.focus {
             Pane::Branches => {
                 let count = view.and_then(|view| Some(view.tree?.branches().len()));

@@ -103,9 +103,10 @@ impl App {
             (Pane::Diagnosis, _) => {
                 let found = view.examination().flatten();
                 let last = found.map_or(0, |found| found.lines().len());
-                self.scroll = match up {
-                    true => self.scroll.saturating_sub(LINES),
-                    false => (self.scroll + LINES).min(last),
+                self.scroll = if up {
+                    self.scroll.saturating_sub(LINES)
+                } else {
+                    (self.scroll + LINES).min(last)
                 };
                 return None;
             }

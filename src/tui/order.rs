@@ -18,14 +18,13 @@ impl App {
     pub fn watched(&self, view: &View) -> usize {
         let monitors = &view.model.monitors;
         let moves = |at: &usize| {
-            let values = frame::curve(view.frames, *at);
-            let values = values
+            let (low, high) = frame::curve(view.frames, *at)
                 .into_iter()
                 .map(|[value, _]| value)
-                .filter(|x| x.is_finite());
-            let (low, high) = values.fold((0.0, 0.0), |(low, high): (f64, f64), x| {
-                (low.min(x), high.max(x))
-            });
+                .filter(|x| x.is_finite())
+                .fold((0.0, 0.0), |(low, high): (f64, f64), x| {
+                    (low.min(x), high.max(x))
+                });
             high - low > view.noise(&monitors[*at])
         };
         let last = monitors.len().saturating_sub(1);
@@ -37,9 +36,10 @@ impl App {
 
     /// The mode of a slave node; the one before this iteration if the next one is hidden.
     pub fn shown_mode(&self, view: &View, slave: usize) -> Mode {
-        match self.learning.hides(view, slave) {
-            true => view.mode_before(slave),
-            false => view.mode(slave),
+        if self.learning.hides(view, slave) {
+            view.mode_before(slave)
+        } else {
+            view.mode(slave)
         }
     }
 

@@ -12,9 +12,10 @@ use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
 /// Draws a pane's border and title, and returns the area inside. A focused pane has a thick border, with or without colour.
 pub fn frame(buffer: &mut Buffer, area: Rect, title: &str, focused: bool, theme: &Theme) -> Rect {
-    let (kind, border, title_style) = match focused {
-        true => (BorderType::Thick, theme.focus, theme.focus),
-        false => (BorderType::Plain, theme.faint, theme.heading),
+    let (kind, border, title_style) = if focused {
+        (BorderType::Thick, theme.focus, theme.focus)
+    } else {
+        (BorderType::Plain, theme.faint, theme.heading)
     };
     let title = cut(title, usize::from(area.width.saturating_sub(4)));
     let title = Line::styled(format!(" {title} "), title_style);
@@ -97,8 +98,8 @@ pub fn mark(cell: &mut Cell, glyph: &str, style: Style) {
 
 /// Wraps a text into lines of this width, with a blank on either side.
 pub fn wrapped(text: &str, width: usize, style: Style) -> Lines {
-    let lines = wrap(text, width.saturating_sub(2)).into_iter();
-    lines
+    wrap(text, width.saturating_sub(2))
+        .into_iter()
         .map(|line| Line::styled(format!(" {line}"), style))
         .collect()
 }

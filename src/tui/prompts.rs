@@ -113,9 +113,10 @@ impl App {
                     _ => offer.group == Group::Lessons,
                 };
                 let name = offer.name.clone();
-                return Some(match is_lesson {
-                    true => Effect::Lesson(name),
-                    false => Effect::Open(name),
+                return Some(if is_lesson {
+                    Effect::Lesson(name)
+                } else {
+                    Effect::Open(name)
                 });
             }
             "q" if fresh && view.is_none() => return Some(Effect::Quit),

@@ -211,9 +211,10 @@ fn events(debugger: &mut Debugger, terminal: &mut Terminal, signals: &Signals) -
             }
             debugger.breathe();
             // Redraws during a burst of keys, too.
-            input = match drawn.elapsed() < BUSY {
-                true => next_event(Duration::ZERO, &mut reply)?,
-                false => None,
+            input = if drawn.elapsed() < BUSY {
+                next_event(Duration::ZERO, &mut reply)?
+            } else {
+                None
             };
         }
         if signals.stop() {

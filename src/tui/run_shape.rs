@@ -22,9 +22,12 @@ pub fn draw(buffer: &mut Buffer, inner: Rect, run: &FinishedRun, app: &App, view
         return paint::lines(buffer, inner, &lines);
     }
     let is_plane = points().all(|point| point[2] == 0.0);
-    let flat = |[x, y, z]: [f64; 3]| match is_plane {
-        true => [x, y],
-        false => app.camera.projection.sheet([x, y, z]),
+    let flat = |[x, y, z]: [f64; 3]| {
+        if is_plane {
+            [x, y]
+        } else {
+            app.camera.projection.sheet([x, y, z])
+        }
     };
     let mut bounds = Bounds::NOTHING;
     points().for_each(|point| bounds.add(flat(*point)));
@@ -37,14 +40,19 @@ pub fn draw(buffer: &mut Buffer, inner: Rect, run: &FinishedRun, app: &App, view
     let window = Window::new(&canvas, &bounds, &app.camera, place(selected));
     for (faces, style) in shape.faces.iter().zip([app.theme.faint, app.theme.strong]) {
         for face in faces {
-            let around = face.iter().chain(face.first());
-            let dots: Vec<_> = around.map(|point| window.dot(flat(*point))).collect();
+            let dots: Vec<_> = face
+                .iter()
+                .chain(face.first())
+                .map(|point| window.dot(flat(*point)))
+                .collect();
             canvas.polyline(&dots, style);
         }
     }
     canvas.render(buffer);
-    let others = (0..shape.slaves.len()).filter(|slave| *slave != selected);
-    for slave in others.chain([selected]) {
+    for slave in (0..shape.slaves.len())
+        .filter(|slave| *slave != selected)
+        .chain([selected])
+    {
         let at = |place: Point| canvas.cell(window.dot(place));
         let Some(at) = place(slave).and_then(at) else {
             continue;
@@ -52,15 +60,17 @@ pub fn draw(buffer: &mut Buffer, inner: Rect, run: &FinishedRun, app: &App, view
         let mode = app.shown_mode(view, slave);
         let style = app.theme.mode(mode).add_modifier(Modifier::BOLD);
         let letter = if mode == Mode::Free { "·" } else { "C" };
-        let style = match slave == selected {
-            true => style.add_modifier(Modifier::REVERSED),
-            false => style,
+        let style = if slave == selected {
+            style.add_modifier(Modifier::REVERSED)
+        } else {
+            style
         };
         paint::label(buffer, at, letter, style, &app.theme);
     }
-    let side = match is_plane {
-        true => String::new(),
-        false => format!(" {} view (V)  ", app.camera.projection.word()),
+    let side = if is_plane {
+        String::new()
+    } else {
+        format!(" {} view (V)  ", app.camera.projection.word())
     };
     let line = Rect {
         y: inner.bottom() - 1,

@@ -27,8 +27,12 @@ use stickslip_scene::shown;
 
 /// The area that a page over the panes covers.
 pub fn body(places: &ScreenAreas, view: Option<&View>) -> Rect {
-    let areas = places.panes.iter().map(|pane| pane.1);
-    let body = areas.reduce(Rect::union).unwrap_or_default();
+    let body = places
+        .panes
+        .iter()
+        .map(|pane| pane.1)
+        .reduce(Rect::union)
+        .unwrap_or_default();
     match view {
         Some(_) => body,
         // Without a scene the status is only the program's name.

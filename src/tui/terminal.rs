@@ -67,11 +67,13 @@ impl Terminal {
     /// Draws the changes of a screen, in a synchronized update if the terminal supports it; returns the screen size.
     pub fn show(&mut self, screen: impl FnOnce(&mut Buffer, Rect)) -> io::Result<Rect> {
         queue!(stdout(), BeginSynchronizedUpdate)?;
-        let drawn = self.screen.draw(|frame| {
-            let area = frame.area();
-            screen(frame.buffer_mut(), area);
-        });
-        let drawn = drawn.map(|frame| frame.area);
+        let drawn = self
+            .screen
+            .draw(|frame| {
+                let area = frame.area();
+                screen(frame.buffer_mut(), area);
+            })
+            .map(|frame| frame.area);
         execute!(stdout(), EndSynchronizedUpdate)?;
         drawn
     }
@@ -177,9 +179,10 @@ fn enter() -> io::Result<()> {
     enable_raw_mode()?;
     signals::read_without_waiting()?;
     execute!(stdout(), EnterAlternateScreen, EnableBracketedPaste, Hide)?;
-    match MOUSE.load(Ordering::SeqCst) {
-        true => console::report_mouse(true),
-        false => Ok(()),
+    if MOUSE.load(Ordering::SeqCst) {
+        console::report_mouse(true)
+    } else {
+        Ok(())
     }
 }
 

@@ -143,9 +143,10 @@ impl Theme {
 
     /// The theme for a choice of colours, unless the environment asks for none.
     pub fn chosen(colours: Colours) -> Self {
-        match wants_no_colour() {
-            true => Theme::mono(),
-            false => Theme::new(colours),
+        if wants_no_colour() {
+            Theme::mono()
+        } else {
+            Theme::new(colours)
         }
     }
 

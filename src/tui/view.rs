@@ -82,9 +82,10 @@ impl<'a> View<'a> {
             cursor: session.cursor(),
             running: session.is_running(),
             residuals: session.timeline().residual_history(),
-            aside: match session.is_running() {
-                true => String::new(),
-                false => session.aside(),
+            aside: if session.is_running() {
+                String::new()
+            } else {
+                session.aside()
             },
         };
         if view.event().is_none() {
@@ -132,8 +133,9 @@ impl<'a> View<'a> {
     /// Whether the pushes of the shown minor iteration are computed only on demand.
     pub fn is_costly(&self) -> bool {
         let place = self.tree.map(|tree| (tree.current(), self.cursor));
-        let known = place.zip(self.background);
-        known.is_some_and(|(place, background)| background.is_costly(place))
+        place
+            .zip(self.background)
+            .is_some_and(|(place, background)| background.is_costly(place))
     }
 
     /// The solids' point that is inverted or outside the range of its law, once the background thread has found it.
@@ -248,17 +250,19 @@ impl<'a> View<'a> {
 
     /// A value as a table cell ([`number::fixed_width`]); a dash if an attached solver does not report it.
     pub fn cell(&self, value: f64, width: usize) -> String {
-        match self.is_absent(value) {
-            true => shown::padded(&format!(" {}", number::UNREPORTED), width),
-            false => number::fixed_width(value, width),
+        if self.is_absent(value) {
+            shown::padded(&format!(" {}", number::UNREPORTED), width)
+        } else {
+            number::fixed_width(value, width)
         }
     }
 
     /// A value with ten digits ([`number::shortest`]), or a dash.
     pub fn long(&self, value: f64) -> String {
-        match self.is_absent(value) {
-            true => number::UNREPORTED.into(),
-            false => number::shortest(value),
+        if self.is_absent(value) {
+            number::UNREPORTED.into()
+        } else {
+            number::shortest(value)
         }
     }
 

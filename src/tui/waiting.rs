@@ -59,8 +59,12 @@ impl App {
     /// Queues a bound key after its count.
     pub(super) fn put_off_key(&mut self, name: &str, count: Option<u32>, awaited: WaitReason) {
         let digits = count.map_or(String::new(), |count| count.to_string());
-        let names = digits.chars().map(String::from).chain([name.to_owned()]);
-        for key in names.filter_map(|name| keys::press(&name)) {
+        for key in digits
+            .chars()
+            .map(String::from)
+            .chain([name.to_owned()])
+            .filter_map(|name| keys::press(&name))
+        {
             self.ahead.push(QueuedInput::Key(key), Some(awaited));
         }
     }

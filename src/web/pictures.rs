@@ -40,10 +40,11 @@ pub fn pictures(
     settings: &[(String, String)],
     part: f64,
 ) -> Result<Pictures, String> {
-    let own = scene
+    let overrides: Vec<_> = scene
         .overrides()
-        .map(|(path, value)| (path.to_owned(), value.to_owned()));
-    let overrides: Vec<_> = own.chain(settings.iter().cloned()).collect();
+        .map(|(path, value)| (path.to_owned(), value.to_owned()))
+        .chain(settings.iter().cloned())
+        .collect();
     let scene = Scene::open(&scene.name, &overrides).map_err(|why| why.to_string())?;
     let path = &scene.spec.history.path;
     let whole: f64 = path.windows(2).map(|leg| (leg[1] - leg[0]).abs()).sum();
@@ -57,9 +58,10 @@ pub fn pictures(
             travelled += (event.load_factor - load).abs();
             load = event.load_factor;
         }
-        match travelled < part * whole {
-            true => ControlFlow::Continue(()),
-            false => ControlFlow::Break(()),
+        if travelled < part * whole {
+            ControlFlow::Continue(())
+        } else {
+            ControlFlow::Break(())
         }
     });
     let (state, event) = (stepper.state(), stepper.event());

@@ -42,8 +42,7 @@ pub fn restore(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> {
             break;
         }
     }
-    let ways = kept.iter().rev().chain(kept.first());
-    for (place, token) in ways.clone() {
+    for (place, token) in kept.iter().rev().chain(kept.first()) {
         if let Some((found, mend)) = comes_back(&mut trial, *place, token, states)? {
             return Ok(fails(found, mend));
         }

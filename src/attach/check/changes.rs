@@ -376,11 +376,12 @@ pub fn friction(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> {
     });
     // The first iteration may still use the old value.
     let (least, then) = (size(now.get(1..).unwrap_or(&[])), size(states));
-    Ok(match then > 0.0 && least > cohesion.max(1e-6 * then) {
-        true => fails(
+    Ok(if then > 0.0 && least > cohesion.max(1e-6 * then) {
+        fails(
             format!("with mu = 0 the largest limit is {least:?}"),
             "compute limit as mu f_n + cohesion with the new mu, from the next iteration on",
-        ),
-        false => good("with mu = 0 every limit is the cohesion"),
+        )
+    } else {
+        good("with mu = 0 every limit is the cohesion")
     })
 }

@@ -72,19 +72,21 @@ pub fn wrong_requests(mut trial: Trial, states: &[State]) -> Result<Outcome, Fau
 /// Checks that the solver ends on `bye`.
 pub fn bye(mut trial: Trial, _: &[State]) -> Result<Outcome, Fault> {
     let began = Instant::now();
-    Ok(match trial.link.leave(true, PATIENCE) {
-        true => good(format!("ends within {:.0} ms", millis(began.elapsed()))),
-        false => fails("does not end", "end on bye"),
+    Ok(if trial.link.leave(true, PATIENCE) {
+        good(format!("ends within {:.0} ms", millis(began.elapsed())))
+    } else {
+        fails("does not end", "end on bye")
     })
 }
 
 /// Checks that the solver ends when the debugger is gone.
 pub fn end_of_input(mut trial: Trial, _: &[State]) -> Result<Outcome, Fault> {
-    Ok(match trial.link.leave(false, PATIENCE) {
-        true => good("ends when its standard input is closed"),
-        false => fails(
+    Ok(if trial.link.leave(false, PATIENCE) {
+        good("ends when its standard input is closed")
+    } else {
+        fails(
             "does not end when its standard input is closed",
             "treat an empty read as the end of the input, and leave the loop",
-        ),
+        )
     })
 }

@@ -33,9 +33,10 @@ pub fn stepping(report: &mut Report, mut trial: Trial) -> Vec<State> {
     let mut times = Vec::new();
     let mut end = Ok(());
     let enough = |states: &[State]| {
-        let most = match states.iter().any(is_settled) {
-            true => STEPS,
-            false => MOST_STEPS,
+        let most = if states.iter().any(is_settled) {
+            STEPS
+        } else {
+            MOST_STEPS
         };
         states.len() >= most
     };
@@ -125,12 +126,13 @@ fn prompt(trial: &mut Trial) -> Result<Outcome, Fault> {
     }
     let each = millis(began.elapsed()) / f64::from(ROUNDS);
     let found = format!("{each:.2} ms per request without work");
-    Ok(match each <= PROMPT {
-        true => good(found),
-        false => fails(
+    Ok(if each <= PROMPT {
+        good(found)
+    } else {
+        fails(
             found,
             "read and write whole lines without delays: no polling with sleeps, and a flush after each line",
-        ),
+        )
     })
 }
 
@@ -269,8 +271,11 @@ fn unfollowed(before: &State, state: &State) -> Option<(String, &'static str)> {
     if before.ended != EndedLevel::Iteration {
         return None;
     }
-    let mut pairs = before.contacts.iter().zip(&state.contacts);
-    let other = pairs.find(|(then, now)| then.next != now.mode);
+    let other = before
+        .contacts
+        .iter()
+        .zip(&state.contacts)
+        .find(|(then, now)| then.next != now.mode);
     other.map(|(then, now)| {
         (
             format!(
@@ -292,12 +297,16 @@ fn same_attempt(then: Position, now: Position) -> bool {
 fn laws(states: &[State]) -> Outcome {
     let accepted = states.iter().filter(|state| is_settled(state));
     // The force scale comes from all states, since a single state may have only round-off forces.
-    let all = states.iter().flat_map(|state| &state.contacts);
-    let forces = all.flat_map(|found| [found.f_n, found.f_t.map(|f| f.size())]);
-    let forces = forces.flatten();
+    let forces = states
+        .iter()
+        .flat_map(|state| &state.contacts)
+        .flat_map(|found| [found.f_n, found.f_t.map(|f| f.size())])
+        .flatten();
     let largest = max_abs(forces);
-    let slips = states.iter().flat_map(|state| &state.contacts);
-    let slips = slips.filter_map(|found| Some(found.slip?.size()));
+    let slips = states
+        .iter()
+        .flat_map(|state| &state.contacts)
+        .filter_map(|found| Some(found.slip?.size()));
     let crawl = ALLOWED * slips.fold(0.0, f64::max);
     let (mut count, mut nearly) = (0, String::new());
     for state in accepted {
@@ -418,9 +427,10 @@ pub fn determinism(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault>
                 MEND,
             ));
         }
-        match numbers(then) == numbers(&now) {
-            true => texts = true,
-            false => bits = bits.or(Some(number)),
+        if numbers(then) == numbers(&now) {
+            texts = true
+        } else {
+            bits = bits.or(Some(number))
         }
     }
     Ok(good(match bits {
@@ -445,9 +455,10 @@ fn numbers(state: &State) -> State {
 
 /// How two states differ.
 pub fn difference(then: &State, now: &State) -> String {
-    let rest = match numbers(then) == numbers(now) {
-        true => "only texts differ",
-        false => "numbers differ in the last digits",
+    let rest = if numbers(then) == numbers(now) {
+        "only texts differ"
+    } else {
+        "numbers differ in the last digits"
     };
     otherwise(then, now).unwrap_or_else(|| rest.into())
 }
@@ -461,8 +472,12 @@ fn otherwise(then: &State, now: &State) -> Option<String> {
         return Some("another outcome (`ended`)".into());
     }
     let modes = |found: &ContactResult| (found.mode, found.next);
-    let mut pairs = then.contacts.iter().zip(&now.contacts);
-    let other = pairs.find(|(then, now)| modes(then) != modes(now))?.1;
+    let other = then
+        .contacts
+        .iter()
+        .zip(&now.contacts)
+        .find(|(then, now)| modes(then) != modes(now))?
+        .1;
     let id = other.label();
     Some(format!(
         "contact {} is {}, next {}",

@@ -99,8 +99,12 @@ impl Trial {
         match self.ask(&Request::Step)? {
             Answer::State(mut state) => {
                 if self.hello.abilities.partial {
-                    let ids = self.scene.contacts.iter().map(|contact| contact.id.clone());
-                    let ids: Vec<Id> = ids.collect();
+                    let ids: Vec<Id> = self
+                        .scene
+                        .contacts
+                        .iter()
+                        .map(|contact| contact.id.clone())
+                        .collect();
                     let all = state.complete(&ids, &self.contacts);
                     self.contacts = all.map_err(|why| Fault::Unfit {
                         message: "state",

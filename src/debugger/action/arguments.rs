@@ -312,8 +312,10 @@ fn condition(words: &[&str], context: &Context) -> Result<Condition, ParseError>
         }
         ("mode" | "leaves", _) => Err(usage("[NODE] [MODE]")),
         ("margin", [.., value]) if rest.len() <= 2 => {
-            let below = value.parse::<f64>().ok().filter(|below| below.is_finite());
-            let below = below
+            let below = value
+                .parse::<f64>()
+                .ok()
+                .filter(|below| below.is_finite())
                 .ok_or_else(|| ParseError::no_value(value, "margin", "expected a number".into()))?;
             let node = any_or_exact(rest.get(rest.len().wrapping_sub(2)), context)?;
             Ok(Condition::Margin { node, below })
@@ -414,9 +416,10 @@ fn one_of<T: Copy>(
 fn monitor(name: &str, context: &Context) -> Result<usize, ParseError> {
     let monitors = &model(context)?.monitors;
     let found = monitors.iter().position(|monitor| monitor.name == name);
-    found.ok_or_else(|| match monitors.is_empty() {
-        true => ParseError::NoMonitors,
-        false => {
+    found.ok_or_else(|| {
+        if monitors.is_empty() {
+            ParseError::NoMonitors
+        } else {
             let names: Vec<_> = monitors.iter().map(|m| m.name.as_str()).collect();
             let (name, monitors) = (name.to_string(), names.join(", "));
             ParseError::NoMonitor { name, monitors }

@@ -112,20 +112,23 @@ impl ActionEntry {
                 .collect(),
             (Verb::Open, 0) => context.scenes.to_vec(),
             (Verb::Help, 0) => manual::PAGES.iter().map(|page| page.topic.into()).collect(),
-            (Verb::Lesson, 0) => {
-                let names = context.lessons.iter();
-                names.map(|lesson| lesson.name.into()).collect()
-            }
+            (Verb::Lesson, 0) => context
+                .lessons
+                .iter()
+                .map(|lesson| lesson.name.into())
+                .collect(),
             (Verb::Predict, 0) => HiddenDecisions::NAMES.map(String::from).into(),
             (Verb::Copy, 0) => CopyTarget::all().map(|what| what.word().into()).collect(),
             (Verb::Colours, 0) => Colours::NAMES.map(String::from).into(),
             (Verb::Mouse, 0) => ["on", "off"].map(String::from).into(),
             (Verb::Sort, 0) => Sort::NAMES.map(String::from).into(),
             (Verb::Filter, 0) => Filter::NAMES.map(String::from).into(),
-            (Verb::Monitor, 0) => {
-                let monitors = context.model.into_iter().flat_map(|model| &model.monitors);
-                monitors.map(|monitor| monitor.name.clone()).collect()
-            }
+            (Verb::Monitor, 0) => context
+                .model
+                .into_iter()
+                .flat_map(|model| &model.monitors)
+                .map(|monitor| monitor.name.clone())
+                .collect(),
             _ => Vec::new(),
         }
     }

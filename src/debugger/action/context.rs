@@ -77,9 +77,10 @@ pub fn exact(word: &str, context: &Context) -> Result<usize, ParseError> {
         return Ok(slave);
     }
     let (word, slaves) = (word.to_string(), some_names(model));
-    Err(match node.is_some() {
-        true => ParseError::NoSlave { word, slaves },
-        false => ParseError::NoNode { word, slaves },
+    Err(if node.is_some() {
+        ParseError::NoSlave { word, slaves }
+    } else {
+        ParseError::NoNode { word, slaves }
     })
 }
 
@@ -87,8 +88,11 @@ pub fn exact(word: &str, context: &Context) -> Result<usize, ParseError> {
 /// in places.
 fn respelled(word: &str, model: &Model) -> Option<usize> {
     let plain = |name: &str| name.replace('-', ".");
-    let nodes = model.nodes.iter().enumerate();
-    let mut called = nodes.filter(|(_, node)| plain(&node.name) == plain(word));
+    let mut called = model
+        .nodes
+        .iter()
+        .enumerate()
+        .filter(|(_, node)| plain(&node.name) == plain(word));
     called
         .next()
         .filter(|_| called.next().is_none())

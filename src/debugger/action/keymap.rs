@@ -92,15 +92,17 @@ impl Keymap {
             // Position of the action's name, which precedes its keys.
             let of_name = text[..of_keys]
                 .rfind('"')
-                .and_then(|end| text[..end].rfind('"'));
-            let of_name = of_name.unwrap_or(of_keys);
+                .and_then(|end| text[..end].rfind('"'))
+                .unwrap_or(of_keys);
             let misnamed = |message| wrong(of_name, &Path::default(), message);
             let names = || ACTIONS.iter().map(|entry| entry.name);
-            let entry = ACTIONS.iter().find(|entry| entry.name == name);
-            let entry = entry.ok_or_else(|| {
-                let near = did_you_mean(name, names());
-                misnamed(format!("unknown action {}{near}", quoted(name)))
-            })?;
+            let entry = ACTIONS
+                .iter()
+                .find(|entry| entry.name == name)
+                .ok_or_else(|| {
+                    let near = did_you_mean(name, names());
+                    misnamed(format!("unknown action {}{near}", quoted(name)))
+                })?;
             if FIXED.contains(&entry.name) {
                 let key = entry.keys.join(", ");
                 return Err(misnamed(format!("{name} is always {key}")));
@@ -163,9 +165,10 @@ impl Keymap {
     pub fn by_key(&self, key: &str) -> Option<&'static ActionEntry> {
         let changed = |entry: &&ActionEntry| self.changed.contains_key(entry.name);
         let moved = || {
-            let names = self.changed.iter();
-            let mut names = names.filter(|(_, keys)| keys.iter().any(|own| own == key));
-            let (name, _) = names.next()?;
+            let (name, _) = self
+                .changed
+                .iter()
+                .find(|(_, keys)| keys.iter().any(|own| own == key))?;
             ACTIONS.iter().find(|entry| entry.name == *name)
         };
         by_key(key).filter(|entry| !changed(entry)).or_else(moved)
@@ -181,17 +184,20 @@ impl Keymap {
     pub fn listed(&self) -> Vec<(Group, Vec<String>)> {
         let line = |entry: &ActionEntry| {
             let keys: Vec<String> = self.keys(entry).map(|key| format!("{key:?}")).collect();
-            let mark = match self.changed.contains_key(entry.name) {
-                true => "   // changed",
-                false => "",
+            let mark = if self.changed.contains_key(entry.name) {
+                "   // changed"
+            } else {
+                ""
             };
             format!("{:?}: [{}],{mark}", entry.name, keys.join(", "))
         };
         Group::ALL
             .into_iter()
             .map(|group| {
-                let entries = ACTIONS.iter().filter(|entry| entry.group == group);
-                let free = entries.filter(|entry| !FIXED.contains(&entry.name));
+                let free = ACTIONS
+                    .iter()
+                    .filter(|entry| entry.group == group)
+                    .filter(|entry| !FIXED.contains(&entry.name));
                 (group, free.map(line).collect())
             })
             .collect()
@@ -231,14 +237,15 @@ fn check(key: &str) -> Result<(), String> {
             None => NAMED.contains(&key),
         },
     };
-    match known {
-        true => Ok(()),
-        false => Err(format!(
+    if known {
+        Ok(())
+    } else {
+        Err(format!(
             "unknown key {}{}; keys: a letter, F1 to F12, Shift-F1, Ctrl-a, {}",
             quoted(key),
             did_you_mean(key, NAMED),
             NAMED.join(", ")
-        )),
+        ))
     }
 }
 

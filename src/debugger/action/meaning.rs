@@ -270,9 +270,6 @@ stickslip_core::words! {
 impl Colours {
     /// The colours for a light or dark background.
     pub fn for_background(light: bool) -> Colours {
-        match light {
-            true => Colours::Light,
-            false => Colours::Dark,
-        }
+        if light { Colours::Light } else { Colours::Dark }
     }
 }

@@ -54,10 +54,7 @@ impl Need {
 
     fn of(self, offers: &Capabilities) -> Result<(), String> {
         let takes = |one: Intervention| offers.check(&one).map_err(|why| why.to_string());
-        let has = |has: bool, what: &str| match has {
-            true => Ok(()),
-            false => Err(offers.lacks(what)),
-        };
+        let has = |has: bool, what: &str| if has { Ok(()) } else { Err(offers.lacks(what)) };
         let force = |hold: bool| Intervention::Force {
             slave: 0,
             mode: Mode::Free,

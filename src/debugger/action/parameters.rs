@@ -11,13 +11,16 @@ use stickslip_scene::shown;
 
 /// The parameter with the longest name that a text begins with, and the rest of the text.
 pub fn parameter<'a, 'b>(text: &'b str, context: &Context<'a>) -> Option<(&'a Parameter, &'b str)> {
-    let all = context.offers?.parameters.iter();
-    let begun = all.filter_map(|known| {
-        let rest = text.trim_start().strip_prefix(known.name.as_str())?;
-        let apart = rest.is_empty() || rest.starts_with(char::is_whitespace);
-        apart.then_some((known, rest.trim()))
-    });
-    begun.max_by_key(|(known, _)| known.name.len())
+    context
+        .offers?
+        .parameters
+        .iter()
+        .filter_map(|known| {
+            let rest = text.trim_start().strip_prefix(known.name.as_str())?;
+            let apart = rest.is_empty() || rest.starts_with(char::is_whitespace);
+            apart.then_some((known, rest.trim()))
+        })
+        .max_by_key(|(known, _)| known.name.len())
 }
 
 /// The current value of a parameter, as typed.
@@ -54,8 +57,9 @@ pub(super) fn parameter_lines(rest: &str, context: &Context) -> Vec<String> {
 /// The paths that `set` can change during a run.
 pub(super) fn set_paths(context: &Context) -> Vec<String> {
     if let Some(offers) = context.offers {
-        let names = offers.parameters.iter();
-        return names
+        return offers
+            .parameters
+            .iter()
             .map(|known| shown::line(&known.name).into_owned())
             .collect();
     }

@@ -137,6 +137,7 @@ pub(super) fn strips(
     branch: usize,
     start: usize,
 ) -> impl Iterator<Item = (usize, &Strip)> {
-    let points = (start..tree.len(branch)).rev();
-    points.filter_map(move |at| tree.point(branch, at).map(|(_, strip)| (at, strip)))
+    (start..tree.len(branch))
+        .rev()
+        .filter_map(move |at| tree.point(branch, at).map(|(_, strip)| (at, strip)))
 }

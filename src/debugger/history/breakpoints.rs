@@ -185,9 +185,10 @@ impl Breakpoints {
 
     /// All breakpoints in one line.
     pub(crate) fn describe(&self, model: &Model) -> String {
-        match self.all.is_empty() {
-            true => "there are no breakpoints; :break sets one".into(),
-            false => format!("breakpoints {}", listed(model, self.all.iter())),
+        if self.all.is_empty() {
+            "there are no breakpoints; :break sets one".into()
+        } else {
+            format!("breakpoints {}", listed(model, self.all.iter()))
         }
     }
 

@@ -178,8 +178,12 @@ fn same(tree: &Tree, a: (usize, usize), b: (usize, usize)) -> Option<Sameness> {
                 .any(|(x, y)| (x - y).abs() > SAME_STATE * size)
     };
     let forces = |frame: &Frame| -> Vec<f64> {
-        let nodes = frame.state.nodes.iter();
-        nodes.flat_map(|node| node.force()).collect()
+        frame
+            .state
+            .nodes
+            .iter()
+            .flat_map(|node| node.force())
+            .collect()
     };
     let (f, g) = (forces(x), forces(y));
     let scale = |frame: &Frame| frame.event.as_ref().map_or(0.0, |event| event.before.scale);
@@ -188,9 +192,10 @@ fn same(tree: &Tree, a: (usize, usize), b: (usize, usize)) -> Option<Sameness> {
         .chain(&g)
         .fold(scale(x).max(scale(y)), |m, f| m.max(f.abs()));
     let moved = apart(&x.state.u, &y.state.u, tree.model().length);
-    Some(match moved || apart(&f, &g, largest) {
-        true => Sameness::Different,
-        false => Sameness::Same,
+    Some(if moved || apart(&f, &g, largest) {
+        Sameness::Different
+    } else {
+        Sameness::Same
     })
 }
 
@@ -243,8 +248,9 @@ fn differing(model: &Model, a: &Side, b: &Side) -> String {
         let [a, b] = [a.nodes[s].next, b.nodes[s].next].map(names::mode);
         format!("{} {a}, {b}", names::slave(model, s))
     };
-    match nodes.is_empty() {
-        true => ", with the same modes".into(),
-        false => format!(": {}", first_of(nodes.iter().map(describe), SHOWN, "; ")),
+    if nodes.is_empty() {
+        ", with the same modes".into()
+    } else {
+        format!(": {}", first_of(nodes.iter().map(describe), SHOWN, "; "))
     }
 }

@@ -89,8 +89,10 @@ pub enum Rounds {
 /// The behaviour of the modes up to the end of these strips; `None` if they do not keep changing.
 pub fn rounds(strips: &[Strip]) -> Option<Rounds> {
     let last = strips.last()?.position;
-    let solved = strips.iter().enumerate();
-    let solved = solved.filter(|(_, strip)| strip.kind.is_solved());
+    let solved = strips
+        .iter()
+        .enumerate()
+        .filter(|(_, strip)| strip.kind.is_solved());
     let tail: Vec<(usize, &Strip)> = solved
         .rev()
         .take_while(|(_, strip)| {
@@ -130,8 +132,10 @@ pub fn rounds(strips: &[Strip]) -> Option<Rounds> {
             && (1..period).any(|back| !same(0, back) || !same(1, back + 1))
     };
     let margin = |back: usize, slave: usize| f64::from(tail[back - 1].1.margin(slave));
-    let sizes = (0..nodes).map(|slave| margin(1, slave).abs());
-    let largest = sizes.filter(|size| size.is_finite()).fold(0.0, f64::max);
+    let largest = (0..nodes)
+        .map(|slave| margin(1, slave).abs())
+        .filter(|size| size.is_finite())
+        .fold(0.0, f64::max);
     let near = |slave: usize, a: usize, b: usize, limit: f64| {
         let [a, b] = [a, b].map(|back| margin(back, slave));
         a == b || (a - b).abs() <= limit * a.abs().max(b.abs()).max(NO_MARGIN * largest)
@@ -149,13 +153,19 @@ pub fn rounds(strips: &[Strip]) -> Option<Rounds> {
     let values = by_modes.is_none();
     if let Some(round) = by_modes.or_else(by_values) {
         let period = round.len();
-        let again = |back: usize| match values {
-            true => within(back + 1, back + 1 + period, SAME_MARGIN),
-            false => same(back, back + period),
+        let again = |back: usize| {
+            if values {
+                within(back + 1, back + 1 + period, SAME_MARGIN)
+            } else {
+                same(back, back + period)
+            }
         };
         let until = tail.len() - usize::from(values);
-        let rounds = (0..).take_while(|&back| back + period <= until && again(back));
-        let first = rounds.count() + period - usize::from(!values);
+        let first = (0..)
+            .take_while(|&back| back + period <= until && again(back))
+            .count()
+            + period
+            - usize::from(!values);
         let phase = |back: usize, slave: usize| {
             let solved = if back == 0 { period } else { back };
             (modes(back, slave), direction(solved, slave))
@@ -201,9 +211,10 @@ pub fn words(model: &Model, rounds: &Rounds, tells_since: bool) -> String {
             since,
             members,
         } => {
-            let since = match tells_since {
-                true => format!(" from step {since}"),
-                false => String::new(),
+            let since = if tells_since {
+                format!(" from step {since}")
+            } else {
+                String::new()
             };
             let keeps = |(_, phases): &&(usize, Vec<Phase>)| {
                 phases.iter().all(|(mode, _)| *mode == phases[0].0)
@@ -289,8 +300,11 @@ fn turn(a: Option<i16>, b: Option<i16>) -> f64 {
 fn swings(members: &[(usize, Vec<Phase>)]) -> impl Iterator<Item = (usize, f64)> {
     let largest = members.iter().map(|(slave, phases)| {
         let next = phases.iter().cycle().skip(1);
-        let turns = phases.iter().zip(next).map(|((_, a), (_, b))| turn(*a, *b));
-        let finite = turns.filter(|turn| turn.is_finite());
+        let finite = phases
+            .iter()
+            .zip(next)
+            .map(|((_, a), (_, b))| turn(*a, *b))
+            .filter(|turn| turn.is_finite());
         (*slave, finite.fold(0.0, f64::max))
     });
     largest.filter(|(_, degrees)| *degrees > SAME)

@@ -39,9 +39,12 @@ pub fn run_report(model: &Model, strips: &[Strip], frames: &[Frame]) -> (String,
     );
     let mut lines = cuts(model, strips, frames);
     let loads = |is: &dyn Fn(&Strip, &Frame) -> bool| {
-        let all = strips.iter().zip(frames);
-        let all = all.filter(|(strip, frame)| is(strip, frame));
-        let loads: Vec<String> = all.map(|(strip, _)| shortest(strip.load_factor)).collect();
+        let loads: Vec<String> = strips
+            .iter()
+            .zip(frames)
+            .filter(|(strip, frame)| is(strip, frame))
+            .map(|(strip, _)| shortest(strip.load_factor))
+            .collect();
         (!loads.is_empty()).then(|| first_of(loads, MOST, ", "))
     };
     let jumped =
@@ -96,20 +99,23 @@ fn cuts(model: &Model, strips: &[Strip], frames: &[Frame]) -> Vec<String> {
         counted(count, "cut"),
         noun_for(&count, "restart")
     )];
-    let all = strips.iter().zip(frames).filter(|(strip, _)| is_cut(strip));
-    let causes = all.filter_map(|(strip, frame)| {
-        let why = match &frame.event.as_ref()?.outcome {
-            Outcome::Cut { why, .. } | Outcome::WholeIncrement { why, .. } => why,
-            Outcome::PathCorner { why, .. } | Outcome::Fallback { why, .. } => why,
-            _ => return None,
-        };
-        let increment = strip.position.increment;
-        let load = shortest(strip.load_factor);
-        Some(format!(
-            "  increment {increment}, load {load}: {}",
-            brief(model, why)
-        ))
-    });
+    let causes = strips
+        .iter()
+        .zip(frames)
+        .filter(|(strip, _)| is_cut(strip))
+        .filter_map(|(strip, frame)| {
+            let why = match &frame.event.as_ref()?.outcome {
+                Outcome::Cut { why, .. } | Outcome::WholeIncrement { why, .. } => why,
+                Outcome::PathCorner { why, .. } | Outcome::Fallback { why, .. } => why,
+                _ => return None,
+            };
+            let increment = strip.position.increment;
+            let load = shortest(strip.load_factor);
+            Some(format!(
+                "  increment {increment}, load {load}: {}",
+                brief(model, why)
+            ))
+        });
     lines.extend(causes.take(MOST));
     lines
 }
@@ -137,10 +143,13 @@ fn most(
 ) -> Option<String> {
     let mut costs = costs.to_vec();
     costs.sort_by(|a, b| of(b).0.total_cmp(&of(a).0));
-    let words = costs.iter().take(MOST).map(|cost| {
-        let (increment, load) = (cost.increment, shortest(cost.load));
-        format!("increment {increment} at load {load} ({})", of(cost).1)
-    });
-    let words: Vec<String> = words.collect();
+    let words: Vec<String> = costs
+        .iter()
+        .take(MOST)
+        .map(|cost| {
+            let (increment, load) = (cost.increment, shortest(cost.load));
+            format!("increment {increment} at load {load} ({})", of(cost).1)
+        })
+        .collect();
     (!words.is_empty()).then(|| format!("{what}: {}", words.join(", ")))
 }

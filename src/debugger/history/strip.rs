@@ -192,8 +192,12 @@ impl Strip {
                 .collect(),
             elements: elements(model, state, before),
             directions: event.map_or_else(Box::default, |event| {
-                let frames = event.frames.iter().zip(&event.nodes);
-                frames.map(|(_, found)| direction(found)).collect()
+                event
+                    .frames
+                    .iter()
+                    .zip(&event.nodes)
+                    .map(|(_, found)| direction(found))
+                    .collect()
             }),
             letters: event.map_or_else(Box::default, |event| event.words.letters.clone().into()),
         }
@@ -347,8 +351,12 @@ fn elements(model: &Model, state: &State, before: Option<&Strip>) -> Arc<[u32]> 
     let number = |node: &stickslip_core::contact::state::ContactState| match node.spot {
         None => NOWHERE,
         Some(spot) => {
-            let earlier = model.surfaces.iter().take(spot.surface);
-            let count: usize = earlier.map(|surface| surface.elements.len()).sum();
+            let count: usize = model
+                .surfaces
+                .iter()
+                .take(spot.surface)
+                .map(|surface| surface.elements.len())
+                .sum();
             u32::try_from(count + spot.element).unwrap_or(NOWHERE)
         }
     };

@@ -156,9 +156,10 @@ pub fn verdict(tree: &Tree, branch: usize) -> BranchEnd {
                     _ => {}
                 }
             }
-            match ends_marked(tree, branch) {
-                true => BranchEnd::Marked,
-                false => other.unwrap_or(BranchEnd::Accepted),
+            if ends_marked(tree, branch) {
+                BranchEnd::Marked
+            } else {
+                other.unwrap_or(BranchEnd::Accepted)
             }
         }
     }

@@ -51,9 +51,10 @@ pub struct Watch {
 impl Watch {
     /// A watch with the default name, such as `gap beam.5`.
     pub fn new(model: &Model, quantity: WatchQuantity, slave: usize) -> Watch {
-        let name = match quantity.is_nodal() {
-            true => format!("{} {}", quantity.word(), names::slave(model, slave)),
-            false => quantity.word().into(),
+        let name = if quantity.is_nodal() {
+            format!("{} {}", quantity.word(), names::slave(model, slave))
+        } else {
+            quantity.word().into()
         };
         Watch {
             name,

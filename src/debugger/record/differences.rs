@@ -345,8 +345,12 @@ fn paired<'a, T>(a: &'a BTreeMap<String, T>, b: &'a BTreeMap<String, T>) -> Pair
 }
 
 fn force(state: &Recorded) -> f64 {
-    let norms = state.before.iter().chain(&state.after);
-    norms.map(|n| n.scale).fold(0.0, f64::max)
+    state
+        .before
+        .iter()
+        .chain(&state.after)
+        .map(|n| n.scale)
+        .fold(0.0, f64::max)
 }
 
 fn length(snapshot: &Snapshot) -> f64 {

@@ -285,13 +285,11 @@ impl Journal {
         #[cfg(mutants)]
         let sync = stickslip_core::mutants::pick("journal-not-synced", sync, false);
         let failed = |source| failure(&self.path, "written", source);
-        let text = notation::line(line);
-        let text = text.map_err(|e| failed(io::Error::other(e)))? + "\n";
-        let written = self.file.write_all(text.as_bytes());
-        let written = written.and_then(|()| match sync {
-            true => self.file.sync_data(),
-            false => Ok(()),
-        });
+        let text = notation::line(line).map_err(|e| failed(io::Error::other(e)))? + "\n";
+        let written = self
+            .file
+            .write_all(text.as_bytes())
+            .and_then(|()| if sync { self.file.sync_data() } else { Ok(()) });
         match written {
             Ok(()) => self.whole += text.len() as u64,
             // Drop the incomplete line; devices cannot be truncated.
@@ -339,9 +337,10 @@ impl Record {
             .iter()
             .rposition(|byte| *byte == b'\n')
             .map_or(0, |at| at + 1);
-        let marked = match bytes.starts_with(input::MARK.to_string().as_bytes()) {
-            true => input::MARK.len_utf8().min(whole),
-            false => 0,
+        let marked = if bytes.starts_with(input::MARK.to_string().as_bytes()) {
+            input::MARK.len_utf8().min(whole)
+        } else {
+            0
         };
         let text = str::from_utf8(&bytes[marked..whole]).map_err(|e| {
             let good = &bytes[..marked + e.valid_up_to()];
@@ -509,12 +508,13 @@ const NONE: &str = "none";
 fn digested(state: &State) -> State {
     let state = state.digested();
     #[cfg(mutants)]
-    let state = match stickslip_core::mutants::is_active("digest-without-contacts") {
-        true => State {
+    let state = if stickslip_core::mutants::is_active("digest-without-contacts") {
+        State {
             nodes: Vec::new(),
             ..state
-        },
-        false => state,
+        }
+    } else {
+        state
     };
     state
 }

@@ -225,8 +225,11 @@ impl WireFrame<'_> {
                 return unfit(format!("contacts[{k}].{name}: must have length 1"));
             }
         }
-        let both = found.normal.zip(found.tangent);
-        if both.is_some_and(|(n, t)| dot(n.in_space(), t.in_space()).abs() >= UNIT) {
+        if found
+            .normal
+            .zip(found.tangent)
+            .is_some_and(|(n, t)| dot(n.in_space(), t.in_space()).abs() >= UNIT)
+        {
             return unfit(format!(
                 "contacts[{k}].tangent: must be at right angles to normal"
             ));
@@ -236,8 +239,9 @@ impl WireFrame<'_> {
 
     /// The frames of all contacts in space; empty in the plane.
     fn frames(&self, sent: &message::State) -> Vec<Frame> {
-        let contacts = sent.contacts.iter().filter(|_| self.model.space.is_some());
-        contacts
+        sent.contacts
+            .iter()
+            .filter(|_| self.model.space.is_some())
             .map(|found| {
                 let n = found.normal.map_or([0.0, 0.0, 1.0], |n| n.in_space());
                 [n, found.tangent.map_or_else(|| along(n), |t| t.in_space())]
@@ -247,11 +251,12 @@ impl WireFrame<'_> {
 
     /// Tolerances for ties, relative to the forces.
     fn ties(&self, sent: &message::State) -> Ties {
-        let forces = sent
+        let largest = sent
             .contacts
             .iter()
-            .flat_map(|found| [found.f_n, found.f_t.map(|f| f.size())]);
-        let largest = forces.flatten().fold(0.0, |most: f64, f| most.max(f.abs()));
+            .flat_map(|found| [found.f_n, found.f_t.map(|f| f.size())])
+            .flatten()
+            .fold(0.0, |most: f64, f| most.max(f.abs()));
         Ties {
             force: TIE * largest,
             length: TIE * self.model.length,
@@ -362,8 +367,11 @@ impl WireFrame<'_> {
     fn next(&self, from: &State, sent: &message::State, event: &Event) -> State {
         let mut state = from.clone();
         if let Some(displacements) = &sent.displacements {
-            let u = displacements.iter().flat_map(Components::as_slice).copied();
-            let u = u.collect();
+            let u = displacements
+                .iter()
+                .flat_map(Components::as_slice)
+                .copied()
+                .collect();
             state.u = Arc::new(u);
         }
         state.follow(event, from.place().unwrap_or(0));
@@ -376,8 +384,10 @@ impl WireFrame<'_> {
 
 /// The largest displacement (length); 0 if none are reported.
 fn largest(displacements: Option<&[Components]>) -> f64 {
-    let all = displacements.unwrap_or_default().iter();
-    all.fold(0.0, |most: f64, moved| most.max(moved.size()))
+    displacements
+        .unwrap_or_default()
+        .iter()
+        .fold(0.0, |most: f64, moved| most.max(moved.size()))
 }
 
 /// The signed component along t; in space the length of the vector.

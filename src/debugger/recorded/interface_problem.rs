@@ -81,8 +81,10 @@ pub fn read_problem(problem: &ProblemMessage, ids: &[Id]) -> Result<ReportedProb
             counted(size, "number")
         )));
     }
-    let friction = problem.mu.iter().zip(&cohesion);
-    let friction: Vec<Friction> = friction
+    let friction: Vec<Friction> = problem
+        .mu
+        .iter()
+        .zip(&cohesion)
         .map(|(&mu, &cohesion)| Friction::from_coefficient(mu, cohesion))
         .collect();
     if friction

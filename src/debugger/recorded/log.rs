@@ -72,9 +72,10 @@ impl Log {
     pub fn keep(&self, path: &Path, overwrite: bool) -> std::io::Result<()> {
         let mut options = File::options();
         options.write(true).append(!overwrite).truncate(overwrite);
-        match overwrite {
-            true => options.create(true),
-            false => options.create_new(true),
+        if overwrite {
+            options.create(true)
+        } else {
+            options.create_new(true)
         };
         let mut file = options.open(path)?;
         file.write_all(format!("{SEALED_HEAD}\n").as_bytes())?;

@@ -27,9 +27,11 @@ impl Recording {
         if let Some(run) = calculix::file(name) {
             return run.map(Box::new).map(Recording::Calculix).map(Some);
         }
-        let exchange = exchange::file(name).transpose();
-        let exchange = exchange.map_err(|why| why.to_string())?;
-        Ok(exchange.map(Box::new).map(Recording::Exchange))
+        Ok(exchange::file(name)
+            .transpose()
+            .map_err(|why| why.to_string())?
+            .map(Box::new)
+            .map(Recording::Exchange))
     }
 
     /// Kind of the recording.

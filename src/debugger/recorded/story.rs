@@ -34,11 +34,10 @@ pub fn story(file: &str, opened: &mut OpenedExchange) -> String {
     }
     for number in 0..opened.lines.len() {
         let (before, line) = (&opened.lines[..number], &opened.lines[number]);
-        let common = before
+        let (along, whose) = before
             .iter()
             .enumerate()
-            .map(|(k, other)| (in_common(line, other), k));
-        let (along, whose) = common
+            .map(|(k, other)| (in_common(line, other), k))
             .max_by_key(|&(along, k)| (along, std::cmp::Reverse(k)))
             .unwrap_or((0, 0));
         text += "\n";
@@ -96,12 +95,13 @@ fn way(
                     .map(|slave| names::slave(model, slave))
                     .collect();
                 let more = if differ.len() > NAMED { ", …" } else { "" };
-                let differ = match differ.is_empty() {
-                    true => String::new(),
-                    false => format!(
+                let differ = if differ.is_empty() {
+                    String::new()
+                } else {
+                    format!(
                         "; ≠ own rules at {}{more}",
                         differ[..differ.len().min(NAMED)].join(", ")
-                    ),
+                    )
                 };
                 (strip, report::outcome(model, event) + &differ)
             }

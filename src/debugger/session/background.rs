@@ -471,12 +471,12 @@ impl Helper {
                 examine(stepper, spec, (place, &state, nodes), news, stop)
             }
             BackgroundRequest::Export(ask) => {
-                let done = match self.spec.is_none() && is_of_problem(&ask) {
-                    true => self
-                        .interface_problem(&ask.state)
+                let done = if self.spec.is_none() && is_of_problem(&ask) {
+                    self.interface_problem(&ask.state)
                         .map_err(ExportError::from)
-                        .and_then(|posed| write_posed(&self.model, &posed, &ask)),
-                    false => write(self.solver().0, &ask),
+                        .and_then(|posed| write_posed(&self.model, &posed, &ask))
+                } else {
+                    write(self.solver().0, &ask)
                 };
                 let done = done.map(|()| format!("wrote {}", ask.file.display()));
                 news.send(BackgroundReply::Exported(done)).ok()
@@ -568,12 +568,11 @@ fn examine(
         ),
         some => {
             let found = DiagnosisPage::new(examine_nodes(stepper, state, some, &stopped));
-            match stopped() {
-                false => Some(found),
-                true => {
-                    drop(send(Some(found), true));
-                    None
-                }
+            if stopped() {
+                drop(send(Some(found), true));
+                None
+            } else {
+                Some(found)
             }
         }
     };

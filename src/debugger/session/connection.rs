@@ -147,9 +147,10 @@ impl Connection {
                 let names: Vec<&str> = known.iter().map(|known| known.name.as_str()).collect();
                 return Err(Refusal::NoParameter {
                     name: path.to_owned(),
-                    known: match names.is_empty() {
-                        true => "it has none".into(),
-                        false => format!("it has {}", names.join(", ")),
+                    known: if names.is_empty() {
+                        "it has none".into()
+                    } else {
+                        format!("it has {}", names.join(", "))
                     },
                 });
             }

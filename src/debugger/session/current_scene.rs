@@ -37,10 +37,11 @@ impl CurrentScene<'_> {
         let all = &self.scene.model.contacts;
         let contacts = all.iter().zip(&self.controls.friction);
         let cohesion = |area: f64, now: &Friction| (area, now.cohesion);
-        let by_area = contacts.filter_map(|(c, now)| {
-            (c.friction == scene.of_node(c.area)).then_some(cohesion(c.area?, now))
-        });
-        let by_area: Vec<(f64, f64)> = by_area.collect();
+        let by_area: Vec<(f64, f64)> = contacts
+            .filter_map(|(c, now)| {
+                (c.friction == scene.of_node(c.area)).then_some(cohesion(c.area?, now))
+            })
+            .collect();
         let order = |a: &&(f64, f64), b: &&(f64, f64)| a.0.total_cmp(&b.0);
         let ends = by_area
             .iter()

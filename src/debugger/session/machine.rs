@@ -212,11 +212,14 @@ impl Session {
     pub fn aside(&self) -> String {
         let several = self.timeline.tree().branches().len() > 1;
         let branch = several.then(|| format!("in {}", self.timeline.name()));
-        let watches = self.watches.values(self.frame());
-        let watches = watches.into_iter().map(|(name, value)| match value {
-            Some(value) => format!("{name} = {}", shortest(value)),
-            None => format!("{name} = none"),
-        });
+        let watches =
+            self.watches
+                .values(self.frame())
+                .into_iter()
+                .map(|(name, value)| match value {
+                    Some(value) => format!("{name} = {}", shortest(value)),
+                    None => format!("{name} = none"),
+                });
         let finished = self.model().finished.as_ref();
         finished
             .map(|_| NO_MODES.to_owned())

@@ -58,11 +58,13 @@ impl Session {
         {
             return self.background.pushes_unknown(place, slave);
         }
-        self.background
-            .ask_pushes(place, slave, || match is_attached {
-                true => timeline.iterations(before).map(BetweenRuns::Reported),
-                false => Some(BetweenRuns::Path(timeline.push_path(before))),
-            });
+        self.background.ask_pushes(place, slave, || {
+            if is_attached {
+                timeline.iterations(before).map(BetweenRuns::Reported)
+            } else {
+                Some(BetweenRuns::Path(timeline.push_path(before)))
+            }
+        });
     }
 
     /// Requests the cause of the cycle from the shown state, or else its consistent states; for these nodes

@@ -35,9 +35,10 @@ impl Session {
             });
         }
         // An interrupted motion is replayed up to where it stopped.
-        match entry.command.is_motion() {
-            true => self.journal.add(entry.clone()),
-            false => self.journal.replace_last(entry.clone()),
+        if entry.command.is_motion() {
+            self.journal.add(entry.clone())
+        } else {
+            self.journal.replace_last(entry.clone())
         }
         Ok(())
     }

@@ -123,9 +123,10 @@ impl Timeline {
     /// Rejects a new branch when the branches have used up their memory budget.
     pub(super) fn check_room(&self) -> Result<(), Refusal> {
         let (taken, most) = (self.tree.permanent_bytes(), self.tree.budget().branches);
-        match taken < most {
-            true => Ok(()),
-            false => Err(Refusal::NoRoom { taken, most }),
+        if taken < most {
+            Ok(())
+        } else {
+            Err(Refusal::NoRoom { taken, most })
         }
     }
 
@@ -201,8 +202,9 @@ impl Timeline {
         if other == current {
             return Err(Refusal::SameBranch);
         }
-        let comparison = self.compare(current, other);
-        let comparison = comparison.ok_or(Refusal::NothingToCompare)?;
+        let comparison = self
+            .compare(current, other)
+            .ok_or(Refusal::NothingToCompare)?;
         Ok(compare::describe(&self.tree, &comparison))
     }
 
@@ -420,8 +422,13 @@ impl Timeline {
                 && event.is_some_and(|event| major(event.position) == major(shown))
         };
         let frames = &self.frames()[..=self.cursor];
-        let events = frames.iter().rev().take_while(of_major).take(MOST_REPORTED);
-        let mut events: Vec<_> = events.filter_map(|frame| frame.event.clone()).collect();
+        let mut events: Vec<_> = frames
+            .iter()
+            .rev()
+            .take_while(of_major)
+            .take(MOST_REPORTED)
+            .filter_map(|frame| frame.event.clone())
+            .collect();
         events.reverse();
         let before = frames.len().checked_sub(events.len() + 1);
         let start = before

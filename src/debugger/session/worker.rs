@@ -274,8 +274,10 @@ fn run(
     let (mut left, mut hits) = (count, Vec::new());
     let interrupted = || stop.load(Ordering::Relaxed) > 0;
     let most = if count == 0 { 0 } else { u64::MAX };
-    let until = Until::end().minors(most).past_failures();
-    let until = until.interrupted_by(&interrupted);
+    let until = Until::end()
+        .minors(most)
+        .past_failures()
+        .interrupted_by(&interrupted);
     let mut began = Instant::now();
     // Our own solver detects cycles itself.
     let mut watch = solver.stepper().is_none().then(rounds::CycleWatch::default);
@@ -300,17 +302,18 @@ fn run(
         ControlFlow::Continue(())
     });
     let end = match end {
-        Ok(RunEnd::Stopped(is_slice_over)) => match is_slice_over? {
-            true => {
+        Ok(RunEnd::Stopped(is_slice_over)) => {
+            if is_slice_over? {
                 return Some(Some(Steps::Run {
                     before,
                     unit,
                     count: left,
                     breakpoints,
                 }));
+            } else {
+                RunEnd::Spent
             }
-            false => RunEnd::Spent,
-        },
+        }
         Ok(end) => end,
         Err(lost) => return send_last(news, Message::Lost(lost)),
     };

@@ -21,8 +21,11 @@ pub(super) fn worst_point(model: &Model, u: &[f64]) -> Option<PointDeformation> 
 impl WorstPoints {
     /// The point at displacements; `None` if nobody asked for it.
     pub(super) fn find(&self, u: &Arc<Vec<f64>>) -> Option<Option<PointDeformation>> {
-        let mut latest_first = self.0.iter().rev();
-        let (_, found) = latest_first.find(|(of, _)| of.as_ptr() == Arc::as_ptr(u))?;
+        let (_, found) = self
+            .0
+            .iter()
+            .rev()
+            .find(|(of, _)| of.as_ptr() == Arc::as_ptr(u))?;
         Some(*found)
     }
 

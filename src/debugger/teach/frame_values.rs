@@ -178,8 +178,10 @@ impl FrameValues {
     ///
     /// # Errors If the bodies cannot be condensed, or there are too many nodes for a census.
     pub fn answers(&self) -> Result<usize, LessonError> {
-        let frozen = self.stepper().interface_problem();
-        let frozen = frozen.ok_or(LessonError::NotCondensed)?;
+        let frozen = self
+            .stepper()
+            .interface_problem()
+            .ok_or(LessonError::NotCondensed)?;
         Ok(census(&frozen)
             .map_err(LessonError::NoCensus)?
             .answers
@@ -195,8 +197,10 @@ impl FrameValues {
     ///
     /// # Errors If the bodies cannot be condensed, or a body is loose without contact.
     pub fn interface(&self, slave: usize) -> Result<CondensedNode, LessonError> {
-        let frozen = self.stepper().interface_problem();
-        let frozen = frozen.ok_or(LessonError::NotCondensed)?;
+        let frozen = self
+            .stepper()
+            .interface_problem()
+            .ok_or(LessonError::NotCondensed)?;
         let condensed = || {
             let at = frozen.nodes.iter().position(|node| node.slave == slave)?;
             let mut trials = Trials::new(&frozen)?;

@@ -83,8 +83,9 @@ fn lesson(name: &str, students: usize, taken: &[&LessonProgress]) -> Vec<String>
 
 /// Answers that were right at the first attempt, of those given.
 fn right(taken: &[&LessonProgress]) -> String {
-    let counted = taken.iter().flat_map(|lesson| &lesson.given);
-    let (right, all) = counted
+    let (right, all) = taken
+        .iter()
+        .flat_map(|lesson| &lesson.given)
         .filter(|given| given.counts)
         .fold((0, 0), |(right, all), given| {
             (right + usize::from(given.right), all + 1)
@@ -101,8 +102,11 @@ fn minutes(taken: &[&LessonProgress]) -> String {
 /// The step whose first answer was wrong most often, and how often; `None` if all were right.
 fn most_missed(taken: &[&LessonProgress]) -> Option<(usize, usize)> {
     let mut wrong: BTreeMap<usize, usize> = BTreeMap::new();
-    let counted = taken.iter().flat_map(|lesson| &lesson.given);
-    for given in counted.filter(|given| given.counts && !given.right) {
+    for given in taken
+        .iter()
+        .flat_map(|lesson| &lesson.given)
+        .filter(|given| given.counts && !given.right)
+    {
         *wrong.entry(given.step).or_default() += 1;
     }
     // The first of several.

@@ -377,8 +377,8 @@ fn runs(spec: &LessonSpec, scene: &Scene) -> Result<Option<Arc<Runs>>, Fault> {
         .chart
         .iter()
         .enumerate()
-        .map(|(index, text)| Vary::parse(text).at(at!["chart", index]));
-    let over = over.collect::<Result<Vec<_>, Fault>>()?;
+        .map(|(index, text)| Vary::parse(text).at(at!["chart", index]))
+        .collect::<Result<Vec<_>, Fault>>()?;
     let runs = Runs::new(scene.name.clone(), over, spec.set.clone());
     Ok(Some(Arc::new(runs)))
 }
@@ -506,8 +506,7 @@ impl LessonReader<'_> {
                     (None, true) => Goal::Failure,
                     (None, false) => Goal::End,
                 };
-                let lines = solution.iter().enumerate();
-                let solution = lines.map(|(k, line)| {
+                let solution = solution.iter().enumerate().map(|(k, line)| {
                     let path = path.then("solution").then(k);
                     Ok(press_of(line, &self.context()).at(path)?.0)
                 });
@@ -563,8 +562,7 @@ impl LessonReader<'_> {
                 if !(2..=MOST_CHOICES).contains(&choices.len()) {
                     bail!(path, "a question needs 2 to {MOST_CHOICES} choices");
                 }
-                let all = choices.iter().enumerate();
-                let read = all.map(|(k, (text, when))| {
+                let read = choices.iter().enumerate().map(|(k, (text, when))| {
                     let path = path.then(k);
                     let text = self.template(path.then(0), text, LONGEST_REMARK)?;
                     Ok((text, self.truth(path.then(1), when)?))
@@ -625,8 +623,10 @@ fn press_of(press: &str, context: &Context) -> Result<(Action, String), PressErr
     let (word, rest) = press.split_once(' ').unwrap_or((press, ""));
     let found = action::by_name(word).map_err(|why| {
         // No suggestion for short words such as `up`: almost any name is similar.
-        let names = action::ACTIONS.iter().map(|entry| entry.name);
-        let names = names.filter(|name| name.len() > 3);
+        let names = action::ACTIONS
+            .iter()
+            .map(|entry| entry.name)
+            .filter(|name| name.len() > 3);
         PressError::NoAction(why, did_you_mean(word, names))
     })?;
     let action = action::parse(press, context)?;

@@ -146,11 +146,12 @@ impl Progress {
     ///
     /// # Errors If the file cannot be written, or exists and must stay.
     pub(super) fn write(&self, file: &Path, overwrite: bool) -> Result<(), ProgressError> {
-        let text = notation::lines(self, ron::ser::PrettyConfig::new());
-        let text = text.map_err(|e| ProgressError::Damaged {
-            file: file.to_owned(),
-            line: 1,
-            message: e.to_string(),
+        let text = notation::lines(self, ron::ser::PrettyConfig::new()).map_err(|e| {
+            ProgressError::Damaged {
+                file: file.to_owned(),
+                line: 1,
+                message: e.to_string(),
+            }
         })?;
         Ok(files::write(file, &text, overwrite)?)
     }
@@ -188,9 +189,10 @@ impl LessonProgress {
 
     /// The step (from 0) at which a lesson with this number of steps resumes: 0 if it was finished or has changed.
     pub fn resumes_at(&self, steps: usize) -> usize {
-        match self.ended == 0 && self.of == steps {
-            true => self.steps.min(steps.saturating_sub(1)),
-            false => 0,
+        if self.ended == 0 && self.of == steps {
+            self.steps.min(steps.saturating_sub(1))
+        } else {
+            0
         }
     }
 

@@ -335,10 +335,13 @@ fn whole_number(whole: SolveQuantity, look: &FrameValues) -> Result<f64, LessonE
         },
         SolveQuantity::Majors => f64::from(look.end()?.majors),
         SolveQuantity::Residual => look.residual()?,
-        SolveQuantity::Sliding => {
-            let nodes = look.frame.state.nodes.iter();
-            nodes.filter(|node| node.mode == Mode::Sliding).count() as f64
-        }
+        SolveQuantity::Sliding => look
+            .frame
+            .state
+            .nodes
+            .iter()
+            .filter(|node| node.mode == Mode::Sliding)
+            .count() as f64,
         SolveQuantity::Verdict => return Err(LessonError::NoNumber),
     })
 }
@@ -420,9 +423,10 @@ impl Template {
             Piece::Value(quantity) => quantity.looks_ahead() || Some(quantity) == asked,
             Piece::Words(_) => false,
         };
-        match self.0.iter().any(tells) {
-            true => Err(LessonError::TellsAnswer),
-            false => Ok(()),
+        if self.0.iter().any(tells) {
+            Err(LessonError::TellsAnswer)
+        } else {
+            Ok(())
         }
     }
 

@@ -93,8 +93,10 @@ impl TutorQuestion {
                 )
             }
             Answer::Choice(choices) => {
-                let texts = choices.iter().map(|(text, _)| text.fill(now, "…"));
-                let options = texts.collect::<Result<_, _>>()?;
+                let options = choices
+                    .iter()
+                    .map(|(text, _)| text.fill(now, "…"))
+                    .collect::<Result<_, _>>()?;
                 (
                     AnswerKind::Choice,
                     options,
@@ -153,12 +155,13 @@ impl TutorQuestion {
 
     /// The reply to a wrong answer that allows another attempt.
     pub(super) fn reply_to_wrong(&self, word: &str) -> String {
-        match self.has_wrong_sign(word) {
-            true => format!(
+        if self.has_wrong_sign(word) {
+            format!(
                 "No: the amount is right, but the sign is wrong. {}",
                 self.help()
-            ),
-            false => format!("No. {}", self.help()),
+            )
+        } else {
+            format!("No. {}", self.help())
         }
     }
 

@@ -54,8 +54,7 @@ impl Runs {
     ///
     /// # Errors If none or several match.
     pub fn of(&self, settings: &[(String, String)]) -> Result<&Point, LessonError> {
-        let points = self.measure()?.points.iter();
-        let mut found = points.filter(|point| {
+        let mut found = self.measure()?.points.iter().filter(|point| {
             let has =
                 |wanted: &(String, String)| point.settings.iter().any(|own| same(own, wanted));
             settings.iter().all(has)

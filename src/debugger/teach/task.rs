@@ -56,9 +56,10 @@ impl LessonTask {
         if !self.goal.is_reached(frame) {
             let nothing_fails =
                 self.goal == Goal::Failure && frame.state.status == Status::Finished;
-            return match nothing_fails {
-                true => Err(NOTHING_FAILS.into()),
-                false => Ok(None),
+            return if nothing_fails {
+                Err(NOTHING_FAILS.into())
+            } else {
+                Ok(None)
             };
         }
         let used = self.without.iter().find(|aid| uses(**aid, frames));
@@ -125,8 +126,9 @@ fn uses(aid: Aid, frames: &[Frame]) -> bool {
 /// What a task excludes, in words; empty if nothing.
 fn without(aids: &[Aid]) -> String {
     let words: Vec<_> = aids.iter().map(|aid| aid.words()).collect();
-    match words.is_empty() {
-        true => String::new(),
-        false => format!(" without {}", words.join(", ")),
+    if words.is_empty() {
+        String::new()
+    } else {
+        format!(" without {}", words.join(", "))
     }
 }

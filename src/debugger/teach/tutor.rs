@@ -146,10 +146,12 @@ impl Tutor {
 
     /// Number of questions answered right at the first attempt, and of all.
     pub fn score(&self) -> (u32, u32) {
-        let counted = self.given.iter().filter(|given| given.counts);
-        counted.fold((0, 0), |(right, asked), given| {
-            (right + u32::from(given.right), asked + 1)
-        })
+        self.given
+            .iter()
+            .filter(|given| given.counts)
+            .fold((0, 0), |(right, asked), given| {
+                (right + u32::from(given.right), asked + 1)
+            })
     }
 
     /// All answers so far.
@@ -253,9 +255,12 @@ impl Tutor {
 
     /// The lesson after this one, when it has ended.
     pub fn next_lesson(&self) -> Option<&'static str> {
-        let names = lesson::list().iter().map(|lesson| lesson.name);
-        let mut next = names.skip_while(|name| *name != self.lesson.name).skip(1);
-        next.next().filter(|_| self.step().is_none())
+        lesson::list()
+            .iter()
+            .map(|lesson| lesson.name)
+            .skip_while(|name| *name != self.lesson.name)
+            .nth(1)
+            .filter(|_| self.step().is_none())
     }
 
     /// Checks whether an action is allowed now. Returns whether it is the one that the lesson waits for; then
@@ -319,9 +324,10 @@ impl Tutor {
             good: Some(good),
         });
         self.done = good;
-        match good {
-            true => self.note("done", true),
-            false => self.answers += 1,
+        if good {
+            self.note("done", true)
+        } else {
+            self.answers += 1
         }
     }
 
@@ -538,8 +544,9 @@ impl Tutor {
 
 /// A text and its equations, which are between dollar signs.
 pub fn paragraphs(text: &str) -> Vec<Paragraph> {
-    let parts = text.split('$').map(str::trim).enumerate();
-    parts
+    text.split('$')
+        .map(str::trim)
+        .enumerate()
         .filter(|(_, part)| !part.is_empty())
         .map(|(index, part)| match index % 2 {
             0 => Paragraph::Text(part.to_owned()),

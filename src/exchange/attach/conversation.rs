@@ -58,10 +58,10 @@ pub struct TranscriptLine {
 impl TranscriptLine {
     /// The line of the file with its line end; several lines if the text has several.
     pub fn line(side: Side, text: &str) -> String {
-        let text = text.trim_end_matches(['\n', '\r']);
-        let lines = text.split('\n');
-        let sealed = lines.map(|line| seal::sealed(&format!("{} {line}", side.sign())) + "\n");
-        sealed.collect()
+        text.trim_end_matches(['\n', '\r'])
+            .split('\n')
+            .map(|line| seal::sealed(&format!("{} {line}", side.sign())) + "\n")
+            .collect()
     }
 
     /// Whether a text is a transcript.
@@ -83,8 +83,10 @@ impl TranscriptLine {
             Some(end) => &text[..end],
             None => text,
         };
-        let lines = whole.lines().enumerate().skip(1);
-        lines
+        whole
+            .lines()
+            .enumerate()
+            .skip(1)
             .map(|(number, line)| {
                 let line = match seal::opened(line) {
                     _ if !are_sealed => line,

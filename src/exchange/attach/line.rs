@@ -40,8 +40,10 @@ impl<R: BufRead> LineReader<R> {
     pub fn next_line(&mut self) -> io::Result<Line> {
         let mut bytes = Vec::new();
         let bound = self.most as u64 + 1;
-        let mut part = self.stream.by_ref().take(bound);
-        part.read_until(b'\n', &mut bytes)?;
+        self.stream
+            .by_ref()
+            .take(bound)
+            .read_until(b'\n', &mut bytes)?;
         Ok(match bytes.pop() {
             None => Line::End,
             Some(b'\n') => match String::from_utf8(bytes) {
@@ -51,9 +53,10 @@ impl<R: BufRead> LineReader<R> {
             Some(last) => {
                 bytes.push(last);
                 let begun = beginning(&bytes);
-                match bytes.len() > self.most {
-                    true => Line::TooLong(begun),
-                    false => Line::Torn(begun),
+                if bytes.len() > self.most {
+                    Line::TooLong(begun)
+                } else {
+                    Line::Torn(begun)
                 }
             }
         })

@@ -320,10 +320,7 @@ mod tests {
     }
 
     fn slip(x: Option<f64>, in_space: bool) -> Option<Components> {
-        x.map(|x| match in_space {
-            true => [x, -x].into(),
-            false => x.into(),
-        })
+        x.map(|x| if in_space { [x, -x].into() } else { x.into() })
     }
 
     prop_compose! {

@@ -41,6 +41,16 @@ pub enum Slave {
     Face([u32; 4]),
 }
 
+impl Slave {
+    /// The node, or the corners.
+    pub fn nodes(&self) -> &[u32] {
+        match self {
+            Slave::Node(node) => std::slice::from_ref(node),
+            Slave::Face(corners) => corners,
+        }
+    }
+}
+
 /// A slave in contact with a master face in an iteration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct ClosedContact {
@@ -198,15 +208,12 @@ impl CelReader {
             let next = closed[k];
             let same = kept > range.start
                 && (closed[kept - 1].slave, closed[kept - 1].master) == (next.slave, next.master);
-            match same {
-                true => {
-                    let elements = &mut closed[kept - 1].elements;
-                    *elements = elements.saturating_add(next.elements);
-                }
-                false => {
-                    closed[kept] = next;
-                    kept += 1;
-                }
+            if same {
+                let elements = &mut closed[kept - 1].elements;
+                *elements = elements.saturating_add(next.elements);
+            } else {
+                closed[kept] = next;
+                kept += 1;
             }
         }
         closed.truncate(kept);

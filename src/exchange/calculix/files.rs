@@ -112,9 +112,11 @@ impl CalculixFiles {
         for (at, norms) in cvg.into_iter().flat_map(|table| table.0) {
             all.entry(at).or_default().1 = Some(norms);
         }
-        let rows = sta.into_iter().flat_map(|table| table.0);
-        let rows = rows.map(|row| ((row.step, row.increment, row.attempt), row));
-        let mut rows: BTreeMap<(u32, u32, u32), FinishedAttempt> = rows.collect();
+        let mut rows: BTreeMap<(u32, u32, u32), FinishedAttempt> = sta
+            .into_iter()
+            .flat_map(|table| table.0)
+            .map(|row| ((row.step, row.increment, row.attempt), row))
+            .collect();
         for (at, (closed, norms)) in all {
             let key = (at.step, at.increment, at.attempt);
             run.add_rows_before(&mut rows, key);

@@ -142,8 +142,9 @@ impl Field<'_> {
     /// The field as a whole number; `what` names it in errors.
     pub fn whole_number(self, what: &str) -> Result<u32, FormatError> {
         let text = std::str::from_utf8(self.bytes).ok();
-        let plain = text.filter(|text| text.bytes().all(|byte| byte.is_ascii_digit()));
-        let number = plain.and_then(|text| text.parse().ok());
+        let number = text
+            .filter(|text| text.bytes().all(|byte| byte.is_ascii_digit()))
+            .and_then(|text| text.parse().ok());
         number.ok_or_else(|| {
             let shown = self.shown();
             self.wrong(format!(

@@ -43,9 +43,10 @@ pub fn unknowns(text: &str) -> Result<Vec<MatrixUnknown>, FormatError> {
         };
         unknowns.push(MatrixUnknown { node, direction });
     }
-    match unknowns.is_empty() {
-        true => Err(FormatError::whole("the file contains no unknowns")),
-        false => Ok(unknowns),
+    if unknowns.is_empty() {
+        Err(FormatError::whole("the file contains no unknowns"))
+    } else {
+        Ok(unknowns)
     }
 }
 
@@ -59,11 +60,10 @@ pub fn matrix(text: &str, unknowns: usize) -> Result<Matrix, FormatError> {
     while words.peek().is_some() {
         let mut index = |what: &str| {
             let at = words.count(what)?;
-            match (1..=unknowns).contains(&at) {
-                true => Ok(at - 1),
-                false => {
-                    Err(words.broken(format!("{what} is {at}; the .dof has {unknowns} unknowns")))
-                }
+            if (1..=unknowns).contains(&at) {
+                Ok(at - 1)
+            } else {
+                Err(words.broken(format!("{what} is {at}; the .dof has {unknowns} unknowns")))
             }
         };
         let (row, column) = (index("a row")?, index("a column")?);
@@ -73,13 +73,14 @@ pub fn matrix(text: &str, unknowns: usize) -> Result<Matrix, FormatError> {
             entries.push((column, row, value));
         }
     }
-    match entries.is_empty() {
-        true => Err(FormatError::whole("the file contains no entries")),
-        false => Ok(Matrix {
+    if entries.is_empty() {
+        Err(FormatError::whole("the file contains no entries"))
+    } else {
+        Ok(Matrix {
             rows: unknowns,
             columns: unknowns,
             entries,
-        }),
+        })
     }
 }
 

@@ -49,9 +49,10 @@ pub fn read(bytes: Vec<u8>) -> Result<Problem, FormatError> {
             "the file contains neither fclib_local nor fclib_global; HDF5 files are read as fclib problems",
         ));
     }
-    let root = match has("fclib_local") {
-        true => "fclib_local",
-        false => "fclib_global",
+    let root = if has("fclib_local") {
+        "fclib_local"
+    } else {
+        "fclib_global"
     };
     let mut part = Part {
         file: &file,
@@ -64,9 +65,10 @@ pub fn read(bytes: Vec<u8>) -> Result<Problem, FormatError> {
         3 => 3,
         other => return Err(part.broken("spacedim", &format!("is {other}; it must be 2 or 3"))),
     };
-    match has("fclib_local") {
-        true => local(&part),
-        false => global(&part),
+    if has("fclib_local") {
+        local(&part)
+    } else {
+        global(&part)
     }
 }
 
@@ -165,8 +167,10 @@ impl Part<'_> {
 
     fn whole(&self, name: &str) -> Result<i64, FormatError> {
         let found = self.wholes(name)?;
-        let first = found.first().copied();
-        first.ok_or_else(|| self.broken(name, "is empty; it must be a whole number"))
+        found
+            .first()
+            .copied()
+            .ok_or_else(|| self.broken(name, "is empty; it must be a whole number"))
     }
 
     fn count(&self, name: &str) -> Result<usize, FormatError> {

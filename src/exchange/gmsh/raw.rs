@@ -62,8 +62,12 @@ impl TaggedMesh {
 
     /// Tags of the nodes with their indices, ascending.
     fn index(&self, cursor: &Cursor<'_>) -> Result<Vec<(u64, usize)>, FormatError> {
-        let tags = self.nodes.iter().enumerate();
-        let mut index: Vec<(u64, usize)> = tags.map(|(k, node)| (node.tag, k)).collect();
+        let mut index: Vec<(u64, usize)> = self
+            .nodes
+            .iter()
+            .enumerate()
+            .map(|(k, node)| (node.tag, k))
+            .collect();
         index.sort_unstable();
         match index.windows(2).find(|pair| pair[0].0 == pair[1].0) {
             Some(pair) => {
@@ -108,8 +112,10 @@ impl TaggedMesh {
 /// Index of a node by its tag.
 fn place(index: &[(u64, usize)], tag: u64) -> Option<usize> {
     // Fast path for consecutive tags, the usual case.
-    let guess = index.first().and_then(|(first, _)| tag.checked_sub(*first));
-    let guess = guess.and_then(|far| index.get(usize::try_from(far).ok()?));
+    let guess = index
+        .first()
+        .and_then(|(first, _)| tag.checked_sub(*first))
+        .and_then(|far| index.get(usize::try_from(far).ok()?));
     if let Some((_, place)) = guess.filter(|(found, _)| *found == tag) {
         return Some(*place);
     }

@@ -125,20 +125,23 @@ pub(super) fn elements(cursor: &mut Cursor<'_>, raw: &mut TaggedMesh) -> Result<
 
 /// Size of a block, limited by the remaining total.
 fn within(cursor: &Cursor<'_>, alike: u64, left: usize, what: &str) -> Result<usize, FormatError> {
-    let alike = usize::try_from(alike).ok().filter(|alike| *alike <= left);
-    alike.ok_or_else(|| {
-        cursor.wrong(format!(
-            "the block has more {what} than the {left} left of the declared total"
-        ))
-    })
+    usize::try_from(alike)
+        .ok()
+        .filter(|alike| *alike <= left)
+        .ok_or_else(|| {
+            cursor.wrong(format!(
+                "the block has more {what} than the {left} left of the declared total"
+            ))
+        })
 }
 
 /// Rejects blocks with fewer items than declared.
 fn whole(cursor: &Cursor<'_>, found: usize, count: usize, what: &str) -> Result<(), FormatError> {
-    match found == count {
-        true => Ok(()),
-        false => Err(cursor.wrong(format!(
+    if found == count {
+        Ok(())
+    } else {
+        Err(cursor.wrong(format!(
             "the blocks have {found} {what}, but {count} were declared"
-        ))),
+        )))
     }
 }

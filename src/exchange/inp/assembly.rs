@@ -118,13 +118,11 @@ fn until<'c, 't>(
 
 /// The smallest power of ten above the numbers of all nodes and elements.
 fn above(cards: &[Card<'_>]) -> u64 {
-    let meshes = cards
+    let numbers = cards
         .iter()
-        .filter(|card| card.key == "NODE" || card.key == "ELEMENT");
-    let numbers = meshes.flat_map(|card| &card.lines).filter_map(|line| {
-        let cells = cells(*line);
-        cells.first()?.text.parse::<u64>().ok()
-    });
+        .filter(|card| card.key == "NODE" || card.key == "ELEMENT")
+        .flat_map(|card| &card.lines)
+        .filter_map(|line| cells(*line).first()?.text.parse::<u64>().ok());
     let digits = numbers.max().unwrap_or(0).max(1).ilog10() + 1;
     10_u64.checked_pow(digits).unwrap_or(u64::MAX)
 }

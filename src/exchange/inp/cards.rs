@@ -88,9 +88,10 @@ impl<'t> Card<'t> {
                 "the star must be followed by a keyword; comments start with two stars"
             );
         }
-        let (parameters, open) = match end < line.text.len() {
-            true => parameters_of(line, end + 1)?,
-            false => (Vec::new(), false),
+        let (parameters, open) = if end < line.text.len() {
+            parameters_of(line, end + 1)?
+        } else {
+            (Vec::new(), false)
         };
         let card = Card {
             shown: short(&word.to_uppercase()),

@@ -359,6 +359,11 @@ impl Direction {
             Direction::Rotation => 6,
         }
     }
+
+    /// The axis of a translation, from 0.
+    pub fn axis(self) -> Option<usize> {
+        (self != Direction::Rotation).then_some(self as usize)
+    }
 }
 
 /// A value for one component of one node.

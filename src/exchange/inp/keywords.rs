@@ -448,8 +448,11 @@ pub(super) fn treatment(key: &str) -> Option<Treatment> {
 /// The known keyword closest to an unknown one, if any has the same beginning.
 pub(super) fn nearest(key: &str) -> Option<&'static str> {
     let alike = |name: &str| {
-        let letters = name.chars().filter(|c| !c.is_whitespace());
-        letters.zip(key.chars()).take_while(|(a, b)| a == b).count()
+        name.chars()
+            .filter(|c| !c.is_whitespace())
+            .zip(key.chars())
+            .take_while(|(a, b)| a == b)
+            .count()
     };
     let best = KEYWORDS.iter().max_by_key(|(name, _)| alike(name))?;
     (alike(best.0) >= 3).then_some(best.0)

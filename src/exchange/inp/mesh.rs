@@ -15,12 +15,13 @@ impl Names {
     /// Counts members of sets against the limit.
     pub fn count(&mut self, more: usize, place: DeckLocation) -> Done {
         self.members += more;
-        match self.members <= MEMBERS {
-            true => Ok(()),
-            false => bail!(
+        if self.members <= MEMBERS {
+            Ok(())
+        } else {
+            bail!(
                 place,
                 "sets, surfaces and loads have more than {MEMBERS} members in total"
-            ),
+            )
         }
     }
 
@@ -201,18 +202,15 @@ impl Reader {
             };
             self.names.within = instance.clone();
         }
-        match card.has("GENERATE") {
-            true => {
-                for line in &card.lines {
-                    self.names.generated(&cells(*line), kind, &mut members)?;
-                }
+        if card.has("GENERATE") {
+            for line in &card.lines {
+                self.names.generated(&cells(*line), kind, &mut members)?;
             }
-            false => {
-                for cell in card.cells().filter(|cell| !cell.text.is_empty()) {
-                    members.extend(self.members_of(&cell, kind)?);
-                    self.names.count(0, cell.place())?;
-                    fits(&members, &cell, "set")?;
-                }
+        } else {
+            for cell in card.cells().filter(|cell| !cell.text.is_empty()) {
+                members.extend(self.members_of(&cell, kind)?);
+                self.names.count(0, cell.place())?;
+                fits(&members, &cell, "set")?;
             }
         }
         self.names.within = own;
@@ -257,13 +255,16 @@ impl Reader {
     /// Index of a surface by name.
     pub(super) fn surface_of(&self, cell: &CardCell<'_>) -> Done<usize> {
         let name = plain(cell.text);
-        let known = self.names.surfaces.get(&self.names.name(&name)).copied();
-        known.ok_or_else(|| {
-            cell.wrong(format!(
-                "there is no surface {}; *SURFACE, NAME=... defines one",
-                short(&name)
-            ))
-        })
+        self.names
+            .surfaces
+            .get(&self.names.name(&name))
+            .copied()
+            .ok_or_else(|| {
+                cell.wrong(format!(
+                    "there is no surface {}; *SURFACE, NAME=... defines one",
+                    short(&name)
+                ))
+            })
     }
 
     /// Adds members to the set named by a parameter, if the card has it.
@@ -463,9 +464,10 @@ fn kind_of(name: &str) -> Result<ElementType, String> {
 
 /// Rejects a set or a surface that is too large.
 fn fits<T>(members: &[T], cell: &CardCell<'_>, what: &str) -> Done {
-    match members.len() <= MEMBERS {
-        true => Ok(()),
-        false => bail!(cell, "a {what} has more than {MEMBERS} members"),
+    if members.len() <= MEMBERS {
+        Ok(())
+    } else {
+        bail!(cell, "a {what} has more than {MEMBERS} members")
     }
 }
 

@@ -29,6 +29,7 @@ use keywords::{Pass, Reading, Treatment, nearest, treatment};
 use reader::Reader;
 pub use source::{DECK_BYTES, DeckError, DeckLocation, Fault, Include};
 use source::{Done, Sources};
+use std::collections::HashMap;
 
 /// Whether a text could be a deck: its first line that is neither blank nor a comment begins with a star.
 pub fn is_one(text: &str) -> bool {
@@ -194,6 +195,12 @@ impl Deck {
     /// The name of the file of a location.
     pub fn file(&self, place: DeckLocation) -> &str {
         self.files.get(place.file).map_or("", String::as_str)
+    }
+
+    /// The index of each node, by its number.
+    pub fn labels(&self) -> HashMap<u64, usize> {
+        let labels = self.nodes.iter().map(|node| node.label);
+        labels.zip(0..).collect()
     }
 
     /// The nodes of a side of a plane element, anticlockwise around it: start, end, and the midside node between them, if any.

@@ -11,9 +11,10 @@ use crate::bail;
 /// Rejects a name that is already in use.
 fn free<T>(card: &Card<'_>, all: &[T], name: impl Fn(&T) -> &str) -> Done<String> {
     let wanted = card.required("NAME")?;
-    match all.iter().any(|one| name(one) == wanted) {
-        false => Ok(wanted.to_owned()),
-        true => Err(card.wrong_at("NAME", format!("{} is defined twice", short(wanted)))),
+    if all.iter().any(|one| name(one) == wanted) {
+        Err(card.wrong_at("NAME", format!("{} is defined twice", short(wanted))))
+    } else {
+        Ok(wanted.to_owned())
     }
 }
 
@@ -45,9 +46,10 @@ fn first_of<'t>(
 
 fn positive(cell: &CardCell<'_>, what: &str) -> Done<f64> {
     let value = cell.number(what)?;
-    match value > 0.0 {
-        true => Ok(value),
-        false => bail!(cell, "{what} is {value:?}; it must be positive"),
+    if value > 0.0 {
+        Ok(value)
+    } else {
+        bail!(cell, "{what} is {value:?}; it must be positive")
     }
 }
 
@@ -263,8 +265,9 @@ impl Reader {
             bail!(&first, "{WHAT} is {coefficient:?}; it must not be negative");
         }
         let stick = words.get(1).filter(|cell| !cell.text.is_empty());
-        let stick = stick.map(|cell| positive(cell, "the stick slope"));
-        let stick = stick.transpose()?;
+        let stick = stick
+            .map(|cell| positive(cell, "the stick slope"))
+            .transpose()?;
         if let Some(more) = words.get(2) {
             bail!(
                 more,
@@ -290,11 +293,14 @@ impl Reader {
         let set = self.set_of(set, card.place_of("ELSET"), MeshKind::Elements)?;
         let materials = &self.deck.materials;
         let material = index_of(card, "MATERIAL", "material ", materials, |m| &m.name)?;
-        let members = self.deck.element_sets[set].members.iter();
-        let mut elements = members.map(|&k| &self.deck.elements[k]);
-        let (is, must) = match beams {
-            true => ("not a beam", "*SOLID SECTION"),
-            false => ("a beam", "*BEAM SECTION"),
+        let mut elements = self.deck.element_sets[set]
+            .members
+            .iter()
+            .map(|&k| &self.deck.elements[k]);
+        let (is, must) = if beams {
+            ("not a beam", "*SOLID SECTION")
+        } else {
+            ("a beam", "*BEAM SECTION")
         };
         match elements.find(|element| (element.kind.family == Family::Beam) != beams) {
             None => Ok((set, material)),

@@ -76,7 +76,8 @@ impl Names {
 
     /// An instance by its name in uppercase.
     pub fn instance(&self, name: &str) -> Option<&Instance> {
-        let mut all = self.instances.iter();
-        all.find(|own| own.prefix.strip_suffix('.') == Some(name))
+        self.instances
+            .iter()
+            .find(|own| own.prefix.strip_suffix('.') == Some(name))
     }
 }

@@ -1,7 +1,7 @@
 //! The lines of a deck with those of its include files, and their locations.
 
 /// A location: file number ([`Deck::files`](super::Deck::files)), line and column.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
 pub struct DeckLocation {
     /// 0 is the deck itself.
     pub file: usize,
@@ -25,8 +25,10 @@ pub struct DeckError {
 
 /// A word as CalculiX compares it: uppercase, without spaces and quotes.
 pub(super) fn plain(word: &str) -> String {
-    let letters = word.chars().filter(|c| !c.is_whitespace() && *c != '"');
-    letters.flat_map(char::to_uppercase).collect()
+    word.chars()
+        .filter(|c| !c.is_whitespace() && *c != '"')
+        .flat_map(char::to_uppercase)
+        .collect()
 }
 
 /// An error before its file name is known.
@@ -196,12 +198,14 @@ impl Sources {
                 .texts
                 .get(*file)
                 .and_then(|text| text.get(bytes.clone()));
-            let lines = text.unwrap_or_default().lines().enumerate();
-            lines.map(move |(k, text)| SourceLine {
-                text,
-                file: *file,
-                number: first + k + 1,
-            })
+            text.unwrap_or_default()
+                .lines()
+                .enumerate()
+                .map(move |(k, text)| SourceLine {
+                    text,
+                    file: *file,
+                    number: first + k + 1,
+                })
         })
     }
 }
@@ -253,8 +257,9 @@ fn input(parameters: &str) -> Result<String, &'static str> {
         "*INCLUDE takes exactly one parameter, its file, as in \"*INCLUDE, INPUT=mesh.inp\"";
     let (name, value) = parameters.split_once('=').ok_or(RIGHT)?;
     let value = value.trim().trim_end_matches(',').trim().trim_matches('"');
-    match name.trim().eq_ignore_ascii_case("input") && !value.is_empty() {
-        true => Ok(value.to_owned()),
-        false => Err(RIGHT),
+    if name.trim().eq_ignore_ascii_case("input") && !value.is_empty() {
+        Ok(value.to_owned())
+    } else {
+        Err(RIGHT)
     }
 }

@@ -33,8 +33,11 @@ impl Reader {
                 Some(_) => card.choice("NLGEOM", &["YES", "NO"])? == 0,
             };
         }
-        let increments = card.value("INC").ok().flatten();
-        let increments = increments.and_then(|count| count.parse().ok());
+        let increments = card
+            .value("INC")
+            .ok()
+            .flatten()
+            .and_then(|count| count.parse().ok());
         if card.has("INC") {
             self.deck.add_note(
                 card.place_of("INC"),
@@ -440,14 +443,15 @@ fn directions(first: &CardCell<'_>, words: &[CardCell<'_>]) -> Done<(u64, u64, f
 fn pressed(label: &CardCell<'_>, kind: &str, element: &Element) -> Done<usize> {
     let digits = kind.strip_prefix('P').unwrap_or_default();
     let numbered = !digits.is_empty() && digits.chars().all(|c| c.is_ascii_digit());
-    match numbered && element.kind.family != Family::Beam {
-        true => side_of(label, 'P', element),
-        false => bail!(
+    if numbered && element.kind.family != Family::Beam {
+        side_of(label, 'P', element)
+    } else {
+        bail!(
             label,
             "the load {} is not supported on element {}; supported are P1 to P4 on sides, GRAV, BX and BY",
             short(kind),
             element.label
-        ),
+        )
     }
 }
 

@@ -34,10 +34,11 @@ pub(super) fn spread(
         pairs_of[slave.node].push(pair);
     }
     let places: Vec<[f64; 2]> = names.nodes.iter().map(|node| node.at).collect();
-    let solids = bodies
+    let sides: Vec<AreaSide<'_>> = bodies
         .iter()
-        .filter(|body| matches!(body.kind, BodyKind::Solid(_)));
-    let sides: Vec<AreaSide<'_>> = solids.flat_map(sides).collect();
+        .filter(|body| matches!(body.kind, BodyKind::Solid(_)))
+        .flat_map(sides)
+        .collect();
     let all: Vec<(Contact, usize)> = slaves.drain(..).zip(pairs.drain(..)).collect();
     let (mut done, mut points) = (vec![false; spec.slaves.len()], 0);
     for (slave, pair) in all {
@@ -98,19 +99,20 @@ fn borders(
     let corner = |node: Option<&usize>| node.map_or([f64::NAN; 2], |&node| places[node]);
     let [from, to] = [corner(side.nodes.first()), corner(side.nodes.last())];
     let length = distance(to, from);
-    let elements = masters
+    let over = masters
         .iter()
         .map(|&surface| &surfaces[surface])
         .filter(|surface| !surface.endless)
-        .flat_map(SurfaceElement::all);
-    let ends = elements.flat_map(|element| [element.first(), element.last()]);
-    let over = ends.flatten().filter_map(|&node| {
-        let at = places[node];
-        let is_near = distance(at, from) <= 2.0 * length;
-        let spot = is_near.then(|| closest_point(at, &line, &[0], places, None))??;
-        let gap = projection_at(&line, spot, places, at).gap;
-        (gap.abs() <= length).then_some(spot.xi)
-    });
+        .flat_map(SurfaceElement::all)
+        .flat_map(|element| [element.first(), element.last()])
+        .flatten()
+        .filter_map(|&node| {
+            let at = places[node];
+            let is_near = distance(at, from) <= 2.0 * length;
+            let spot = is_near.then(|| closest_point(at, &line, &[0], places, None))??;
+            let gap = projection_at(&line, spot, places, at).gap;
+            (gap.abs() <= length).then_some(spot.xi)
+        });
     let mut found: Vec<f64> = over
         .filter(|xi| xi.abs() < 1.0 - SAME)
         .chain([-1.0, 1.0])
@@ -127,8 +129,9 @@ fn rule(borders: &[f64], nodes: usize) -> Vec<(f64, f64)> {
         .windows(2)
         .map(|part| (0.5 * (part[0] + part[1]), 0.5 * (part[1] - part[0])));
     let on = |(middle, half): (f64, f64)| {
-        let points = gauss(count).into_iter();
-        points.map(move |(x, weight)| (middle + half * x, half * weight))
+        gauss(count)
+            .into_iter()
+            .map(move |(x, weight)| (middle + half * x, half * weight))
     };
     parts.flat_map(on).collect()
 }

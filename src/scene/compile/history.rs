@@ -36,8 +36,9 @@ pub(super) fn history(history: &History) -> Result<(), Fault> {
     }
     of_legs(history)?;
     let (least, legs) = (history.least(), path.len() - 1);
-    let smallest = (0..legs).map(|leg| history.on_leg(leg));
-    let smallest = smallest.fold(f64::INFINITY, f64::min);
+    let smallest = (0..legs)
+        .map(|leg| history.on_leg(leg))
+        .fold(f64::INFINITY, f64::min);
     if !(least > 0.0 && least <= smallest) {
         bail!(
             at!["history", "least"],
@@ -46,15 +47,12 @@ pub(super) fn history(history: &History) -> Result<(), Fault> {
     }
     let count = increments(path, |leg| history.on_leg(leg));
     if count > limits::INCREMENTS {
-        let message = match history.increments.is_empty() {
-            true => format!(
+        let message = if history.increments.is_empty() {
+            format!(
                 "the history would have {count:e} increments of {increment:?}; at most a million are allowed"
-            ),
-            false => {
-                format!(
-                    "the history would have {count:e} increments; at most a million are allowed"
-                )
-            }
+            )
+        } else {
+            format!("the history would have {count:e} increments; at most a million are allowed")
         };
         return Err(Fault::new(size, message));
     }

@@ -29,8 +29,10 @@ impl Surfaces {
     /// Numbers of the surfaces that are pieces of a cut surface.
     pub(super) fn cut(&self, spec: &Spec) -> Vec<usize> {
         let listed = self.listed.iter().enumerate();
-        let cut = listed.filter(|(_, listed)| spec.surfaces[**listed].cut);
-        cut.map(|(number, _)| number).collect()
+        listed
+            .filter(|(_, listed)| spec.surfaces[**listed].cut)
+            .map(|(number, _)| number)
+            .collect()
     }
 }
 
@@ -94,9 +96,10 @@ pub(super) fn surfaces(spec: &Spec, names: &Names, length: f64) -> Result<Surfac
                     "an endless surface must be straight"
                 );
             }
-            let name = match several {
-                true => format!("{}.{number}", surface.id),
-                false => surface.id.clone(),
+            let name = if several {
+                format!("{}.{number}", surface.id)
+            } else {
+                surface.id.clone()
             };
             all.listed.push(k);
             all.made.push(Surface {
@@ -434,8 +437,10 @@ pub(super) fn drop_idle_slaves(
     slaves: &mut Vec<Contact>,
 ) {
     let single = |node: usize| {
-        let mut all = spec.slaves.iter().flat_map(|group| &group.nodes);
-        all.any(|name| names.node(name) == Ok(node))
+        spec.slaves
+            .iter()
+            .flat_map(|group| &group.nodes)
+            .any(|name| names.node(name) == Ok(node))
     };
     slaves.retain(|slave| {
         has_motion(dofs, slave)

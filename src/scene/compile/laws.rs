@@ -25,9 +25,10 @@ const TOUCHES: f64 = 1e-9;
 pub(super) fn check(here: &Path, group: &SlaveSpec) -> Result<(), Fault> {
     let positive = |at: Path, value: f64, what: &str| {
         limits::finite(&at, value, what)?;
-        match value > 0.0 {
-            true => Ok(()),
-            false => Err(fault!(at, "{what} is {value:?}; it must be positive")),
+        if value > 0.0 {
+            Ok(())
+        } else {
+            Err(fault!(at, "{what} is {value:?}; it must be positive"))
         }
     };
     if let Some(stiffness) = group.law.stiffness() {
@@ -145,9 +146,10 @@ pub(super) fn apply(
     for (slave, &pair) in slaves.iter_mut().zip(pairs) {
         let group = &spec.slaves[pair];
         slave.area = slave.area.or(group.area).or(areas[slave.node]);
-        let own = match group.law.is_tied() {
-            true => FrictionSpec::default(),
-            false => group.friction.unwrap_or(spec.friction),
+        let own = if group.law.is_tied() {
+            FrictionSpec::default()
+        } else {
+            group.friction.unwrap_or(spec.friction)
         };
         check_area(spec, names, group, &own, slave)?;
         slave.friction = own.of_node(slave.area);
@@ -160,11 +162,13 @@ pub(super) fn apply(
 /// Marks the tied nodes that, because of supports, can move along one axis only relative to their surfaces.
 pub(super) fn stand_upright(dofs: &Dofs, surfaces: &[Surface], slaves: &mut [Contact]) {
     for slave in slaves.iter_mut().filter(|slave| slave.bond.is_tied()) {
-        let masters = slave
+        let nodes: Vec<usize> = slave
             .surfaces
             .iter()
-            .flat_map(|&s| surfaces[s].elements.iter().flatten());
-        let nodes: Vec<usize> = masters.copied().chain([slave.node]).collect();
+            .flat_map(|&s| surfaces[s].elements.iter().flatten())
+            .copied()
+            .chain([slave.node])
+            .collect();
         let moves = |k: usize| {
             nodes
                 .iter()
@@ -227,11 +231,10 @@ pub(super) fn check_corners(
 /// Whether two surfaces cross or meet at an angle; each is treated as straight between nodes.
 fn cross(nodes: &[Node], surfaces: [&Surface; 2]) -> bool {
     let sides = |surface: &Surface| -> Vec<[[f64; 2]; 2]> {
-        let elements = surface
+        surface
             .elements
             .iter()
-            .flat_map(|element| element.windows(2));
-        elements
+            .flat_map(|element| element.windows(2))
             .map(|pair| [nodes[pair[0]].at, nodes[pair[1]].at])
             .collect()
     };
@@ -262,12 +265,13 @@ fn bond(group: &SlaveSpec, area: f64) -> Bond {
         _ => 0.0,
     };
     let give = [normal, tangential];
-    match group.law.is_tied() {
-        true => Bond::Tied {
+    if group.law.is_tied() {
+        Bond::Tied {
             give,
             upright: false,
-        },
-        false => Bond::giving(give),
+        }
+    } else {
+        Bond::giving(give)
     }
 }
 

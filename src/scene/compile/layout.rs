@@ -37,8 +37,10 @@ impl Layout {
     pub(super) fn new(on_body: Vec<bool>, bodies: &[Body]) -> Self {
         let dofs = Dofs::new(on_body.len(), bodies);
         let components = |(node, &count): (usize, &u8)| {
-            let held = COMPONENTS.iter().take(count.into());
-            held.map(move |component| (node, *component))
+            COMPONENTS
+                .iter()
+                .take(count.into())
+                .map(move |component| (node, *component))
         };
         let of = dofs.count.iter().enumerate().flat_map(components).collect();
         Layout {
@@ -198,14 +200,15 @@ impl Layout {
                     limits::finite(&here.then("strain"), *strain, "the strain")?;
                     let body = volumes::expanding(bodies, on).at(here.then("on"))?;
                     let scale = factor(&here.then("scale"), scale)?;
-                    loads.pressures.push(match bodies[body].is_small() {
-                        true => Pressure {
+                    loads.pressures.push(if bodies[body].is_small() {
+                        Pressure {
                             faces: Vec::new(),
                             expands: Some(body),
                             value: *strain,
                             scale,
-                        },
-                        false => volumes::large_expansion(body, *strain, &scale),
+                        }
+                    } else {
+                        volumes::large_expansion(body, *strain, &scale)
                     });
                     continue;
                 }

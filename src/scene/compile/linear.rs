@@ -62,8 +62,10 @@ pub(super) fn matrix(here: &Path, body: &BodySpec, names: &Names) -> Result<Body
     square(&here.then(key), rows, size)?;
     let entries = rows.iter().enumerate().flat_map(|(i, row)| {
         let kept = move |(j, _): &(usize, f64)| *j == i;
-        let all = row.iter().copied().enumerate();
-        all.filter(move |entry| kept(entry) || entry.1 != 0.0)
+        row.iter()
+            .copied()
+            .enumerate()
+            .filter(move |entry| kept(entry) || entry.1 != 0.0)
             .map(move |(j, value)| (i, j, value))
     });
     Ok(Body {

@@ -49,8 +49,11 @@ fn give(wanted: PointForce, beam: &Beam, ga: f64, element: &[usize], nodes: &[No
     let speed = |xi: f64| {
         let slopes = shape(count, xi).d;
         let along = |axis: usize| -> f64 {
-            let parts = element.iter().zip(slopes);
-            parts.map(|(&node, d)| d * nodes[node].at[axis]).sum()
+            element
+                .iter()
+                .zip(slopes)
+                .map(|(&node, d)| d * nodes[node].at[axis])
+                .sum()
         };
         along(0).hypot(along(1))
     };

@@ -25,8 +25,8 @@ pub(super) fn faces(
     let mut pressed = Pressed::default();
     for element in chain.elements() {
         // The chain may run in either direction; the body determines the side.
-        let ends = ends(&element);
-        let found = ends.and_then(|(a, b)| outer.get(&(a, b)).or_else(|| outer.get(&(b, a))));
+        let found =
+            ends(&element).and_then(|(a, b)| outer.get(&(a, b)).or_else(|| outer.get(&(b, a))));
         let inner = |face: &[usize]| {
             let own: HashSet<usize> = element.iter().copied().collect();
             face.len() == element.len() && face.iter().all(|node| own.contains(node))

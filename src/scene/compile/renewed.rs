@@ -129,8 +129,10 @@ impl Choices {
     fn other_loads(&self, with: &Compiled<'_>) -> Option<Loads> {
         let (names, bodies) = (with.names, &with.model.bodies);
         let mut on_body = vec![false; names.nodes.len()];
-        let nodes = bodies.iter().flat_map(|body| &body.nodes);
-        nodes.for_each(|&node| on_body[node] = true);
+        bodies
+            .iter()
+            .flat_map(|body| &body.nodes)
+            .for_each(|&node| on_body[node] = true);
         let mut layout = Layout::new(on_body, bodies);
         layout.supports(&self.spec, names).ok()?;
         let mut loads = layout.loads(&self.spec, names, bodies).ok()?;
@@ -160,9 +162,12 @@ impl Choices {
 
     /// Whether any friction is per area.
     fn has_adhesion(&self) -> bool {
-        let own = self.spec.slaves.iter().filter_map(|group| group.friction);
-        let mut all = own.chain([self.spec.friction]);
-        all.any(|friction| friction.adhesion != 0.0)
+        self.spec
+            .slaves
+            .iter()
+            .filter_map(|group| group.friction)
+            .chain([self.spec.friction])
+            .any(|friction| friction.adhesion != 0.0)
     }
 
     /// Number of increments of the history.
@@ -191,12 +196,16 @@ impl Groups {
                 }
             }
         }
-        let contacts = scene.model.contacts.iter();
-        let all = contacts.map(|contact| {
-            let (node, _) = contact.carriers().next()?;
-            of_node.get(node).copied().flatten()
-        });
-        all.collect::<Option<Vec<usize>>>().map(Groups)
+        scene
+            .model
+            .contacts
+            .iter()
+            .map(|contact| {
+                let (node, _) = contact.carriers().next()?;
+                of_node.get(node).copied().flatten()
+            })
+            .collect::<Option<Vec<usize>>>()
+            .map(Groups)
     }
 }
 

@@ -67,8 +67,8 @@ fn parts<'b>(
         return Err(none_called("solid", on, "solids", known) + ", and no block or mesh");
     };
     let wanted: HashSet<Vec<usize>> = mesh.elements.into_iter().map(|(_, nodes)| nodes).collect();
-    let all = solids().flat_map(|(_, solid)| of(solid));
-    let found: Vec<_> = all
+    let found: Vec<_> = solids()
+        .flat_map(|(_, solid)| of(solid))
         .filter(|(element, _)| wanted.contains(&element.nodes))
         .collect();
     if found.is_empty() {

@@ -57,9 +57,10 @@ impl DeckObjects<'_> {
                 Normal::Tied { .. } => ContactLaw::Tied,
             };
             let tied = law.is_tied();
-            let by = match pair.faces && law.stiffness().is_some() && self.is_of_solids(pair) {
-                true => SlavePoints::Surface,
-                false => SlavePoints::Node,
+            let by = if pair.faces && law.stiffness().is_some() && self.is_of_solids(pair) {
+                SlavePoints::Surface
+            } else {
+                SlavePoints::Node
             };
             if pair.faces && by.is_node() {
                 self.add_note(
@@ -186,8 +187,10 @@ impl DeckObjects<'_> {
                      stiffness: a node inside would hop between two sides where the normal jumps",
                 );
             }
-            let mut own = all.iter().filter(|other| other.master == touching.master);
-            let by_nodes = own.all(|other| other.laws.by.is_node());
+            let by_nodes = all
+                .iter()
+                .filter(|other| other.master == touching.master)
+                .all(|other| other.laws.by.is_node());
             for id in &ids {
                 self.origin
                     .note(at!["surfaces", self.spec.surfaces.len()], surface.place);
@@ -247,9 +250,13 @@ impl DeckObjects<'_> {
 
     /// Whether all slave nodes of a master are on continua, which have an outward side.
     fn have_outsides(&self, master: usize, all: &[DeckContact]) -> bool {
-        let continua = self.deck.elements.iter();
-        let continua = continua.filter(|element| element.kind.family != Family::Beam);
-        let on: HashSet<usize> = continua.flat_map(|e| e.nodes.iter().copied()).collect();
+        let on: HashSet<usize> = self
+            .deck
+            .elements
+            .iter()
+            .filter(|element| element.kind.family != Family::Beam)
+            .flat_map(|e| e.nodes.iter().copied())
+            .collect();
         let mut touching = all.iter().filter(|touching| touching.master == master);
         touching.all(|touching| touching.slaves.iter().all(|node| on.contains(node)))
     }
@@ -458,10 +465,14 @@ impl DeckObjects<'_> {
     /// Diagonal of the bounding box of all nodes.
     fn size(&self) -> f64 {
         let range = |axis: usize| {
-            let at = self.deck.nodes.iter().map(|node| node.at[axis]);
-            let (least, most) = at.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| {
-                (a.min(x), b.max(x))
-            });
+            let (least, most) = self
+                .deck
+                .nodes
+                .iter()
+                .map(|node| node.at[axis])
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| {
+                    (a.min(x), b.max(x))
+                });
             most - least
         };
         range(0).hypot(range(1))

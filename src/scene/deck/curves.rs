@@ -108,20 +108,19 @@ pub(super) fn curve(
             jump: given.at_once && fresh,
         };
         let still = !fresh && !acting.iter().any(goes_on);
-        match still {
-            true => before = if given.new { 0.0 } else { before },
-            false => {
-                let jumps = (of_step.at(0.0) - before).abs() > 0.0;
-                let from = if jumps {
-                    leg.increment.min(leg.period)
-                } else {
-                    0.0
-                };
-                for time in of_step.corners(from) {
-                    points.push((leg.begin + time, of_step.at(time)));
-                }
-                before = of_step.at(leg.period);
+        if still {
+            before = if given.new { 0.0 } else { before }
+        } else {
+            let jumps = (of_step.at(0.0) - before).abs() > 0.0;
+            let from = if jumps {
+                leg.increment.min(leg.period)
+            } else {
+                0.0
+            };
+            for time in of_step.corners(from) {
+                points.push((leg.begin + time, of_step.at(time)));
             }
+            before = of_step.at(leg.period);
         }
         points.push((leg.end(), before));
     }

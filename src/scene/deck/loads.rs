@@ -93,12 +93,10 @@ impl DeckObjects<'_> {
 
     fn is_beam_node(&self) -> Vec<bool> {
         let mut on_beam = vec![false; self.deck.nodes.len()];
-        let beams = self
-            .deck
+        self.deck
             .elements
             .iter()
-            .filter(|e| e.kind.family == Family::Beam);
-        beams
+            .filter(|e| e.kind.family == Family::Beam)
             .flat_map(|e| &e.nodes)
             .for_each(|&node| on_beam[node] = true);
         on_beam
@@ -184,12 +182,13 @@ impl DeckObjects<'_> {
         let given = |k: usize| course.is_some_and(|course| !course.given[k].values.is_empty());
         for (k, step) in self.deck.steps.iter().enumerate() {
             #[cfg(mutants)]
-            let step = &match stickslip_core::mutants::is_active("op-new-ignored") {
-                true => Step {
+            let step = &if stickslip_core::mutants::is_active("op-new-ignored") {
+                Step {
                     new_motions: false,
                     ..step.clone()
-                },
-                false => step.clone(),
+                }
+            } else {
+                step.clone()
             };
             if step.new_motions && !given(k) && (k > 0 || from_model) {
                 bail!(
@@ -241,8 +240,10 @@ impl DeckObjects<'_> {
             .map(|&n| self.deck.nodes[n].label as usize)
             .collect();
         let own = self.deck.node_sets.iter().find(|set| {
-            let used = set.members.iter().filter(|&&node| self.used[node]);
-            used.eq(nodes.iter())
+            set.members
+                .iter()
+                .filter(|&&node| self.used[node])
+                .eq(nodes.iter())
         });
         let Some(Nodes::Given { id, sets, .. }) = self.spec.nodes.first_mut() else {
             return wanted.to_owned();
@@ -319,8 +320,8 @@ impl DeckObjects<'_> {
     /// Pressures: sides with the same pressure form one load.
     fn pressures(&mut self, clock: &Clock) {
         let listed = |step: &Step| {
-            let pressed = step.pressures.iter();
-            pressed
+            step.pressures
+                .iter()
                 .map(|p| ((p.element, p.side), p.value, p.amplitude, p.place))
                 .collect()
         };
@@ -419,9 +420,10 @@ impl DeckObjects<'_> {
                     "the load acts on {count} of the {members} connected elements of {on}; it must act on all of them"
                 );
             }
-            let density = match is_weight {
-                false => 1.0,
-                true => self.density(body, place)?,
+            let density = if is_weight {
+                self.density(body, place)?
+            } else {
+                1.0
             };
             let part = |k: usize| if k == axis { value * density } else { 0.0 };
             self.add_load(
@@ -526,8 +528,11 @@ impl DeckObjects<'_> {
             history.increments = clock.increments().collect();
         }
         let smallest = clock.increments().fold(f64::INFINITY, f64::min);
-        let least = deck.steps.iter().filter_map(|step| step.time.least);
-        let least = least.min_by(f64::total_cmp);
+        let least = deck
+            .steps
+            .iter()
+            .filter_map(|step| step.time.least)
+            .min_by(f64::total_cmp);
         history.least = least.filter(|&least| least < smallest);
         for (k, step) in deck.steps.iter().enumerate() {
             for place in [

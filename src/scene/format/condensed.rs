@@ -251,8 +251,11 @@ impl Problem {
                 Matrix::Entries(entries) => entries.clone(),
                 Matrix::Compliance(rows) | Matrix::Stiffness(rows) => {
                     let row = |(i, row): (usize, &Vec<f64>)| {
-                        let entries = row.iter().enumerate().filter(|(_, w)| **w != 0.0);
-                        entries.map(|(j, &w)| (i, j, w)).collect::<Vec<_>>()
+                        row.iter()
+                            .enumerate()
+                            .filter(|(_, w)| **w != 0.0)
+                            .map(|(j, &w)| (i, j, w))
+                            .collect::<Vec<_>>()
                     };
                     rows.iter().enumerate().flat_map(row).collect()
                 }
@@ -266,9 +269,13 @@ impl Problem {
         if let Some(spacing) = self.spacing {
             return spacing;
         }
-        let gaps = self.contacts.iter().map(|contact| contact.gap);
-        let most = gaps.chain(self.free.iter().copied()).map(f64::abs);
-        let most = most.fold(0.0, f64::max);
+        let most = self
+            .contacts
+            .iter()
+            .map(|contact| contact.gap)
+            .chain(self.free.iter().copied())
+            .map(f64::abs)
+            .fold(0.0, f64::max);
         if most > 0.0 { most } else { 1.0 }
     }
 }
@@ -363,8 +370,11 @@ fn lists(rows: &[Vec<f64>]) -> Vec<String> {
 
 /// Numbers separated by commas; zero is written without a sign.
 fn list(numbers: &[f64]) -> String {
-    let words = numbers.iter().map(|&x| format!("{:?}", x + 0.0));
-    words.collect::<Vec<_>>().join(", ")
+    numbers
+        .iter()
+        .map(|&x| format!("{:?}", x + 0.0))
+        .collect::<Vec<_>>()
+        .join(", ")
 }
 
 fn quoted(text: &str) -> String {
@@ -381,9 +391,9 @@ fn differences<T: Serialize>(value: &T, other: &T) -> Vec<String> {
     let pretty = || ron::ser::PrettyConfig::new().indentor("").new_line("\n");
     let lines = |value: &T| notation::strict_lines(value, pretty()).unwrap_or_default();
     let (ours, theirs) = (lines(value), lines(other));
-    let pairs = ours.lines().zip(theirs.lines());
-    let differing = pairs.filter(|(ours, theirs)| ours != theirs);
-    differing
+    ours.lines()
+        .zip(theirs.lines())
+        .filter(|(ours, theirs)| ours != theirs)
         .map(|(ours, _)| ours.trim_end_matches(',').to_owned())
         .collect()
 }
@@ -416,12 +426,13 @@ fn load(contact: &Contact) -> Option<LoadSpec> {
 
 /// Converts a matrix over (n, t) to one over (x, y) = (−t, n).
 fn turned(rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
-    let pairs = rows.chunks(2).flat_map(|pair| {
-        let x = pair.get(1).map(|row| turned_row(row, -1.0));
-        let y = pair.first().map(|row| turned_row(row, 1.0));
-        x.into_iter().chain(y)
-    });
-    pairs.collect()
+    rows.chunks(2)
+        .flat_map(|pair| {
+            let x = pair.get(1).map(|row| turned_row(row, -1.0));
+            let y = pair.first().map(|row| turned_row(row, 1.0));
+            x.into_iter().chain(y)
+        })
+        .collect()
 }
 
 /// The same for the entries of a matrix.
@@ -441,12 +452,13 @@ fn turned_entries(entries: &[(usize, usize, f64)]) -> Vec<(usize, usize, f64)> {
 /// A row over (n, t), times a sign, as a row over (x, y).
 fn turned_row(row: &[f64], sign: f64) -> Vec<f64> {
     let times = |value: f64| if sign < 0.0 { negative(value) } else { value };
-    let pairs = row.chunks(2).flat_map(|pair| {
-        let x = pair.get(1).map(|&t| negative(times(t)));
-        let y = pair.first().map(|&n| times(n));
-        x.into_iter().chain(y)
-    });
-    pairs.collect()
+    row.chunks(2)
+        .flat_map(|pair| {
+            let x = pair.get(1).map(|&t| negative(times(t)));
+            let y = pair.first().map(|&n| times(n));
+            x.into_iter().chain(y)
+        })
+        .collect()
 }
 
 /// The other index of a pair, if the step is an index.

@@ -27,10 +27,17 @@ pub fn locate(text: &str, path: &Path) -> Range<usize> {
 
 /// Byte offset of a line and column, both from 1.
 pub fn byte_at(text: &str, line: usize, column: usize) -> usize {
-    let before = text.split_inclusive('\n').take(line.saturating_sub(1));
-    let start: usize = before.map(str::len).sum();
-    let rest = text.get(start..).unwrap_or("").chars();
-    let within = rest.take(column.saturating_sub(1)).map(char::len_utf8);
+    let start: usize = text
+        .split_inclusive('\n')
+        .take(line.saturating_sub(1))
+        .map(str::len)
+        .sum();
+    let within = text
+        .get(start..)
+        .unwrap_or("")
+        .chars()
+        .take(column.saturating_sub(1))
+        .map(char::len_utf8);
     start + within.sum::<usize>()
 }
 

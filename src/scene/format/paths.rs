@@ -224,8 +224,10 @@ fn walk(spec: &mut Spec, visit: &mut Visit<'_>) {
     }
     if spec.history.increment != increment {
         let part = spec.history.increment / increment;
-        let sizes = spec.history.increments.iter_mut();
-        sizes.for_each(|size| *size *= part);
+        spec.history
+            .increments
+            .iter_mut()
+            .for_each(|size| *size *= part);
     }
     if !own_least && spec.history.least == Some(least) {
         spec.history.least = None;

@@ -73,8 +73,9 @@ pub(super) fn named(nodes: &[Node], some: &[usize]) -> String {
 fn area(nodes: &[Node], around: &[usize]) -> f64 {
     let origin = around.first().map_or([0.0; 2], |&n| nodes[n].at);
     let from = |n: usize| minus(nodes[n].at, origin);
-    let pairs = around.iter().zip(around.iter().cycle().skip(1));
-    pairs
+    around
+        .iter()
+        .zip(around.iter().cycle().skip(1))
         .map(|(&a, &b)| {
             let ([x, y], [v, w]) = (from(a), from(b));
             x * w - v * y

@@ -81,7 +81,9 @@ impl Names {
                 words,
             }
         };
-        let lines = own().filter(|entry| matches!(entry.kind, EntryKind::Sides(_)));
-        lines.map(line).collect()
+        own()
+            .filter(|entry| matches!(entry.kind, EntryKind::Sides(_)))
+            .map(line)
+            .collect()
     }
 }

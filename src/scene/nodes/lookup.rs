@@ -133,8 +133,12 @@ impl Names {
 
     /// Rejects sides of a given mesh unless they form a single open chain of elements of one kind.
     pub(super) fn check_one_chain(&self, name: &str) -> Result<(), String> {
-        let found = self.index.get(name).map(|&k| &self.entries[k]);
-        let Some(entry) = found.filter(|entry| entry.kind == EntryKind::Sides(None)) else {
+        let Some(entry) = self
+            .index
+            .get(name)
+            .map(|&k| &self.entries[k])
+            .filter(|entry| entry.kind == EntryKind::Sides(None))
+        else {
             return Ok(());
         };
         Err(format!(
@@ -147,8 +151,9 @@ impl Names {
     /// Index of the block with an id among the entries.
     pub(super) fn block(&self, id: &str) -> Result<usize, String> {
         let is_block = |kind| matches!(kind, EntryKind::Block(_));
-        let found = self.index.get(id).copied();
-        found
+        self.index
+            .get(id)
+            .copied()
             .filter(|&k| is_block(self.entries[k].kind))
             .ok_or_else(|| none_called("block", id, "blocks", self.ids(is_block)))
     }
@@ -158,8 +163,10 @@ impl Names {
         &self,
         is_one: impl Fn(EntryKind) -> bool + Clone,
     ) -> impl Iterator<Item = &str> + Clone {
-        let entries = self.entries.iter().filter(move |e| is_one(e.kind));
-        entries.map(|e| e.id.as_str())
+        self.entries
+            .iter()
+            .filter(move |e| is_one(e.kind))
+            .map(|e| e.id.as_str())
     }
 
     fn split(&self, name: &str) -> Result<(&NameEntry, Selector), String> {
@@ -319,8 +326,10 @@ impl NameEntry {
     fn labelled(&self, label: usize) -> Result<usize, String> {
         self.labels.binary_search(&label).map_err(|place| {
             let near = place.saturating_sub(1)..self.labels.len().min(place + 1);
-            let near = self.labels[near].iter();
-            let near: Vec<String> = near.map(|l| format!("{}.{l}", self.id)).collect();
+            let near: Vec<String> = self.labels[near]
+                .iter()
+                .map(|l| format!("{}.{l}", self.id))
+                .collect();
             format!(
                 "mesh {:?} has no node with the label {label}; its neighbours are {}",
                 self.id,

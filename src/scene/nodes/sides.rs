@@ -21,8 +21,13 @@ impl SideLine {
     /// The nodes in walking order, each once.
     pub fn nodes(&self) -> Vec<usize> {
         let mut seen = HashSet::new();
-        let sides = self.pieces.iter().flatten().flatten().copied();
-        sides.filter(|n| seen.insert(*n)).collect()
+        self.pieces
+            .iter()
+            .flatten()
+            .flatten()
+            .copied()
+            .filter(|n| seen.insert(*n))
+            .collect()
     }
 
     /// Number of nodes per side, if this is one open piece with equal sides, that is, a chain.
@@ -42,9 +47,10 @@ impl SideLine {
             let name = |n: Option<&usize>| n.map_or("", |&n| nodes[n].name.as_str());
             let (first, last) = (piece.first(), piece.last());
             let (start, end) = (first.and_then(|s| s.first()), last.and_then(|s| s.last()));
-            match start == end {
-                true => format!("a closed one at {}", name(start)),
-                false => format!("{} to {}", name(start), name(end)),
+            if start == end {
+                format!("a closed one at {}", name(start))
+            } else {
+                format!("{} to {}", name(start), name(end))
             }
         };
         let shown = first_of(self.pieces.iter().map(piece), MOST, ", ");

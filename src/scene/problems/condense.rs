@@ -165,9 +165,12 @@ fn by_column(matrix: &Matrix) -> Vec<Vec<(usize, f64)>> {
 
 /// The transpose; for a matrix that should be symmetric, the mean of both.
 fn turned(columns: Vec<Vec<f64>>, symmetric: bool) -> Vec<Vec<f64>> {
-    let entry = |i: usize, j: usize| match symmetric {
-        true => 0.5 * (columns[i][j] + columns[j][i]),
-        false => columns[j][i],
+    let entry = |i: usize, j: usize| {
+        if symmetric {
+            0.5 * (columns[i][j] + columns[j][i])
+        } else {
+            columns[j][i]
+        }
     };
     let size = 0..columns.len();
     size.clone()
@@ -178,8 +181,9 @@ fn turned(columns: Vec<Vec<f64>>, symmetric: bool) -> Vec<Vec<f64>> {
 /// Whether a matrix is exactly symmetric.
 fn is_symmetric(matrix: &Matrix) -> bool {
     let sorted = |turn: bool| {
-        let entries = matrix.entries.iter();
-        let mut entries: Vec<_> = entries
+        let mut entries: Vec<_> = matrix
+            .entries
+            .iter()
             .map(|&(i, j, v)| if turn { (j, i, v) } else { (i, j, v) })
             .collect();
         entries.sort_by(|a, b| (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.total_cmp(&b.2)));

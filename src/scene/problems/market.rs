@@ -74,9 +74,10 @@ pub fn read(file: &str, text: &str, memory: Option<f64>) -> Result<Problem, Scen
             counted(matrix.columns, "column")
         )));
     }
-    match names.stiffness {
-        true => fits(size / 2, memory),
-        false => entries_fit(size / 2, matrix.entries.len() as f64, memory),
+    if names.stiffness {
+        fits(size / 2, memory)
+    } else {
+        entries_fit(size / 2, matrix.entries.len() as f64, memory)
     }
     .map_err(whole)?;
     let mu = column(&names, "mu", &[size / 2, size / 3])?;
@@ -111,9 +112,10 @@ pub fn read(file: &str, text: &str, memory: Option<f64>) -> Result<Problem, Scen
         about: "An interface problem from Matrix Market files.".to_owned(),
         tangents,
         contacts: contacts(&mu, &f.unwrap_or_default()),
-        matrix: match names.stiffness {
-            true => Matrix::Stiffness(matrix.dense()),
-            false => compliance(matrix),
+        matrix: if names.stiffness {
+            Matrix::Stiffness(matrix.dense())
+        } else {
+            compliance(matrix)
         },
         free: q.unwrap_or_default(),
         spacing: None,

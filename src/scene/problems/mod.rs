@@ -55,9 +55,10 @@ fn blocks_fit(contacts: usize, memory: Option<f64>) -> Result<(), String> {
 
 /// A compliance as it is stored in a scene: few contacts have all rows, many the entries.
 fn compliance(w: problem::Matrix) -> Matrix {
-    match w.rows > 2 * FEW {
-        true => Matrix::Entries(w.merged().entries),
-        false => Matrix::Compliance(w.dense()),
+    if w.rows > 2 * FEW {
+        Matrix::Entries(w.merged().entries)
+    } else {
+        Matrix::Compliance(w.dense())
     }
 }
 

@@ -106,12 +106,15 @@ pub(super) fn local(problem: problem::Problem, memory: Option<f64>) -> Result<Lo
 
 /// Rejects numbers that a scene cannot have.
 fn sound(local: &Local) -> Result<(), String> {
-    let of = |what: &dyn Fn() -> String, value: f64| match value.abs() <= limits::MAGNITUDE {
-        true => Ok(()),
-        false => Err(format!(
-            "{} is {value:?}; it must be a number between -1e12 and 1e12",
-            what()
-        )),
+    let of = |what: &dyn Fn() -> String, value: f64| {
+        if value.abs() <= limits::MAGNITUDE {
+            Ok(())
+        } else {
+            Err(format!(
+                "{} is {value:?}; it must be a number between -1e12 and 1e12",
+                what()
+            ))
+        }
     };
     for &(i, j, value) in &local.w.entries {
         let what = || format!("the entry of W in row {}, column {},", i + 1, j + 1);
@@ -195,9 +198,10 @@ fn friction(mu: f64) -> Friction {
 pub(super) fn settings(contacts: usize) -> Settings {
     Settings {
         solver: LinearSolver::Augmented,
-        strategy: match contacts > FEW {
-            true => Strategy::GaussSeidel,
-            false => Strategy::default(),
+        strategy: if contacts > FEW {
+            Strategy::GaussSeidel
+        } else {
+            Strategy::default()
         },
         ..Settings::default()
     }

@@ -265,9 +265,14 @@ impl<'s> StoredParts<'s> {
             state: InitialState::default(),
         };
         let spec = self.spec;
-        let motions = spec.moved.iter().flat_map(|moved| [moved.x, moved.y]);
-        let lengths = motions.flatten().chain(spec.contacts.iter().map(|c| c.gap));
-        let largest = lengths.map(f64::abs).fold(0.0, f64::max);
+        let largest = spec
+            .moved
+            .iter()
+            .flat_map(|moved| [moved.x, moved.y])
+            .flatten()
+            .chain(spec.contacts.iter().map(|c| c.gap))
+            .map(f64::abs)
+            .fold(0.0, f64::max);
         Problem {
             tangents: 1,
             title: spec.title.clone(),
@@ -319,12 +324,13 @@ fn points<'s>(spec: &'s Stored, numbers: &Numbers) -> Result<Vec<Point<'s>>, Fau
             });
         }
     }
-    match points.is_empty() {
-        true => Err(fault!(
+    if points.is_empty() {
+        Err(fault!(
             at!["contacts"],
             "no contacts; name at least one node that may touch"
-        )),
-        false => Ok(points),
+        ))
+    } else {
+        Ok(points)
     }
 }
 

@@ -121,9 +121,10 @@ impl Bitmap {
             };
             // All polygons get the same orientation, so that overlaps do not cancel.
             for k in 0..corners.len() {
-                match turn(corners) > 0.0 {
-                    true => raster.draw_line(near(k), near(k + 1)),
-                    false => raster.draw_line(near(k + 1), near(k)),
+                if turn(corners) > 0.0 {
+                    raster.draw_line(near(k), near(k + 1))
+                } else {
+                    raster.draw_line(near(k + 1), near(k))
                 }
             }
         }
@@ -151,8 +152,11 @@ impl Bitmap {
 /// Twice the signed area of a polygon; the sign is its orientation.
 fn turn(corners: &[(f64, f64)]) -> f64 {
     let next = corners.iter().cycle().skip(1);
-    let pairs = corners.iter().zip(next);
-    pairs.map(|(a, b)| a.0 * b.1 - a.1 * b.0).sum()
+    corners
+        .iter()
+        .zip(next)
+        .map(|(a, b)| a.0 * b.1 - a.1 * b.0)
+        .sum()
 }
 
 /// Polygons that cover a line: a rectangle per segment and a disc per corner.
@@ -170,13 +174,16 @@ fn stroke(points: &[(f64, f64)], width: f64) -> Vec<Vec<(f64, f64)>> {
         ]
     };
     let disc = |(x, y): &(f64, f64)| {
-        let angles = (0..8).map(|k| f64::from(k) * std::f64::consts::FRAC_PI_4);
-        angles
+        (0..8)
+            .map(|k| f64::from(k) * std::f64::consts::FRAC_PI_4)
             .map(|a| (x + half * a.cos(), y + half * a.sin()))
             .collect()
     };
-    let bends = points.get(1..points.len().saturating_sub(1));
-    let bends = bends.unwrap_or_default().iter().map(disc);
+    let bends = points
+        .get(1..points.len().saturating_sub(1))
+        .unwrap_or_default()
+        .iter()
+        .map(disc);
     points.windows(2).map(piece).chain(bends).collect()
 }
 

@@ -24,9 +24,10 @@ pub fn svg(shapes: &[Shape], (width, height): (f64, f64)) -> Result<String, Plot
                     Anchor::Middle => "middle",
                     Anchor::Right => "end",
                 };
-                let turned = match line.upright {
-                    true => format!(" transform=\"rotate(270, {x}, {y})\""),
-                    false => String::new(),
+                let turned = if line.upright {
+                    format!(" transform=\"rotate(270, {x}, {y})\"")
+                } else {
+                    String::new()
                 };
                 let family = match line.face {
                     Face::Sans => "sans-serif",
@@ -73,14 +74,15 @@ fn hex((r, g, b): Colour) -> String {
 }
 
 fn joined(points: &[(f64, f64)]) -> String {
-    let points = points.iter();
     let points: Vec<String> = points
+        .iter()
         .map(|(x, y)| format!("{},{}", short(*x), short(*y)))
         .collect();
     points.join(" ")
 }
 
 fn escaped(text: &str) -> String {
-    let text = text.replace('&', "&amp;");
-    text.replace('<', "&lt;").replace('>', "&gt;")
+    text.replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
 }

@@ -209,9 +209,10 @@ fn comparison(
         of(&|side| {
             let cost = format!("{} minor, {} major", side.cost.minors, side.cost.majors);
             let time = format!(", {:.1} ms", side.cost.seconds * 1e3);
-            match cost.len() + time.len() < wide {
-                true => cost + &time,
-                false => cost,
+            if cost.len() + time.len() < wide {
+                cost + &time
+            } else {
+                cost
             }
         }),
     ));

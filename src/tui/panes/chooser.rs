@@ -57,12 +57,11 @@ pub fn draw(buffer: &mut Buffer, area: Rect, chooser: &Chooser, app: &App) -> Re
     let room = usize::from(list.height);
     let top = (at + 1).saturating_sub(room);
     let lines: Vec<Line> = lines.into_iter().skip(top).collect();
-    match left.is_empty() {
-        true => {
-            let text = " no name or title contains these words; Esc clears them";
-            paint::note(buffer, list, text, &app.theme);
-        }
-        false => paint::lines(buffer, list, &lines),
+    if left.is_empty() {
+        let text = " no name or title contains these words; Esc clears them";
+        paint::note(buffer, list, text, &app.theme);
+    } else {
+        paint::lines(buffer, list, &lines)
     }
     let selected = left.get(chooser.at);
     let known = app.preview.as_ref();
@@ -94,8 +93,12 @@ fn done(offer: &Offer) -> String {
 /// The lines of the list, and the index of the selected one.
 fn lines<'a>(left: &[&'a Offer], at: usize, width: usize, app: &App) -> (Vec<Line<'a>>, usize) {
     let theme = &app.theme;
-    let widths = left.iter().map(|offer| offer.name.width());
-    let names = widths.max().unwrap_or(0).min(width / 2);
+    let names = left
+        .iter()
+        .map(|offer| offer.name.width())
+        .max()
+        .unwrap_or(0)
+        .min(width / 2);
     let is_new = app.offers.iter().all(|offer| offer.reached.is_none());
     let (mut lines, mut here, mut group) = (Vec::new(), 0, None);
     for (index, offer) in left.iter().enumerate() {
@@ -106,9 +109,10 @@ fn lines<'a>(left: &[&'a Offer], at: usize, width: usize, app: &App) -> (Vec<Lin
             };
             lines.push(Line::styled(format!(" {title}"), theme.heading));
         }
-        let (mark, style) = match index == at {
-            true => ("▸", theme.selected),
-            false => (" ", theme.text),
+        let (mark, style) = if index == at {
+            ("▸", theme.selected)
+        } else {
+            (" ", theme.text)
         };
         if index == at {
             here = lines.len();
@@ -139,18 +143,15 @@ fn look(buffer: &mut Buffer, area: Rect, preview: &Preview, side_by_side: bool, 
             return Rect::ZERO;
         }
     };
-    let (words, picture) = match side_by_side {
-        true => {
-            let rows = description(glance, area.width, app).len() as u16 + 1;
-            let rows = [Constraint::Length(rows.min(WORDS)), Constraint::Fill(1)];
-            let [words, picture] = Layout::vertical(rows).areas(area);
-            (words, picture)
-        }
-        false => {
-            let columns = [Constraint::Fill(1), Constraint::Length(PICTURE)];
-            let [words, picture] = Layout::horizontal(columns).areas(area);
-            (words, picture)
-        }
+    let (words, picture) = if side_by_side {
+        let rows = description(glance, area.width, app).len() as u16 + 1;
+        let rows = [Constraint::Length(rows.min(WORDS)), Constraint::Fill(1)];
+        let [words, picture] = Layout::vertical(rows).areas(area);
+        (words, picture)
+    } else {
+        let columns = [Constraint::Fill(1), Constraint::Length(PICTURE)];
+        let [words, picture] = Layout::horizontal(columns).areas(area);
+        (words, picture)
     };
     let mut lines = description(glance, words.width, app);
     let room = usize::from(words.height);

@@ -122,8 +122,10 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
 
 /// The iterations of a slave node up to the shown one.
 fn trail(slave: usize, view: &View) -> Vec<TrailPoint> {
-    let frames = view.frames[..=view.cursor].iter().rev();
-    let solved = frames.filter(|frame| frame.intervention.is_none());
+    let solved = view.frames[..=view.cursor]
+        .iter()
+        .rev()
+        .filter(|frame| frame.intervention.is_none());
     trail::trail(solved.map_while(|frame| frame.event.as_deref()), slave)
 }
 
@@ -137,9 +139,12 @@ fn words(
 ) -> paint::Lines {
     let theme = &app.theme;
     let round_off = view.round_off();
-    let known = |value: f64, text: String| match value.is_finite() {
-        true => text,
-        false => UNREPORTED.to_owned(),
+    let known = |value: f64, text: String| {
+        if value.is_finite() {
+            text
+        } else {
+            UNREPORTED.to_owned()
+        }
     };
     let pair = |v: [f64; 2]| {
         let [x, y] = v.map(|x| known(x, sig4(x + 0.0)));
@@ -267,9 +272,10 @@ fn draw_trail(
     canvas.render(buffer);
     let last = dots.len().saturating_sub(1);
     for (k, (point, at)) in trail.iter().zip(dots).enumerate() {
-        let (glyph, style) = match k == last {
-            true => ("●", theme.mode(point.mode).add_modifier(Modifier::BOLD)),
-            false => ("○", theme.mode(point.mode)),
+        let (glyph, style) = if k == last {
+            ("●", theme.mode(point.mode).add_modifier(Modifier::BOLD))
+        } else {
+            ("○", theme.mode(point.mode))
         };
         if let Some(cell) = canvas.cell(*at).and_then(|at| buffer.cell_mut(at)) {
             paint::mark(cell, glyph, style);
@@ -371,9 +377,10 @@ fn cobweb(buffer: &mut Buffer, area: Rect, trail: &[TrailPoint], app: &App, view
     frame.tick(buffer, 0, &sig2(high), theme.faint);
     let bottom = frame.field.height - 1;
     frame.tick(buffer, bottom, &sig2(low), theme.faint);
-    let name = match origin == 0.0 {
-        true => "used".to_owned(),
-        false => format!("less {}", sig4(origin)),
+    let name = if origin == 0.0 {
+        "used".to_owned()
+    } else {
+        format!("less {}", sig4(origin))
     };
     below(buffer, frame, [low, high], &name, app);
 }
@@ -407,8 +414,12 @@ fn pushes(
     let Some(largest) = found.first().map(|push| of(push).abs()) else {
         return none(buffer, "no change at any node moved it");
     };
-    let names = found.iter().map(|push| view.slave(push.slave).width());
-    let name = names.max().unwrap_or(0).min(12);
+    let name = found
+        .iter()
+        .map(|push| view.slave(push.slave).width())
+        .max()
+        .unwrap_or(0)
+        .min(12);
     let number = 11;
     let target = view.slave(slave);
     let room = usize::from(area.width).saturating_sub(name + number + 6);

@@ -75,8 +75,10 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
 fn span(points: &[[f64; 2]], axis: usize, noise: f64) -> [f64; 2] {
     const MOST: f64 = 1e300;
     let values = || {
-        let values = points.iter().map(|point| point[axis]);
-        values.filter(|x| x.abs() < MOST)
+        points
+            .iter()
+            .map(|point| point[axis])
+            .filter(|x| x.abs() < MOST)
     };
     let (low, high) = (values().fold(0.0, f64::min), values().fold(0.0, f64::max));
     match high - low {
@@ -128,9 +130,10 @@ fn chart(
 fn axes(buffer: &mut Buffer, frame: ChartFrame, x: [f64; 2], y: [f64; 2], theme: &Theme) {
     let label = |value: f64| {
         let whole = sig6(value);
-        match whole.len() < usize::from(LABELS) {
-            true => whole,
-            false => sig2(value),
+        if whole.len() < usize::from(LABELS) {
+            whole
+        } else {
+            sig2(value)
         }
     };
     frame.axis(buffer, theme.faint);

@@ -172,9 +172,10 @@ fn pushes(
     };
     let Some(found) = view.pushes(slave) else {
         let on_demand = "Who pushed it: focus this pane (Tab) to compute it";
-        return match view.is_costly() {
-            true => vec![heading(on_demand)],
-            false => Vec::new(),
+        return if view.is_costly() {
+            vec![heading(on_demand)]
+        } else {
+            Vec::new()
         };
     };
     let Some(found) = found else {
@@ -300,9 +301,10 @@ fn measured(
         ),
         (
             "|F_t|/T_max",
-            match view.is_unreported(record.f_t / record.t_max) {
-                true => format!(" {}", number::UNREPORTED),
-                false => format!(" {}", round_off.ratio(record.f_t, record.t_max)),
+            if view.is_unreported(record.f_t / record.t_max) {
+                format!(" {}", number::UNREPORTED)
+            } else {
+                format!(" {}", round_off.ratio(record.f_t, record.t_max))
             },
             "used fraction of the friction limit",
         ),
@@ -527,9 +529,10 @@ fn tests(record: &ContactRecord, view: &View, width: usize, theme: &Theme) -> pa
     let mut lines = Vec::new();
     for test in record.decision.tests.iter().flatten() {
         let inequality = inequality(test, view);
-        let (margin, style) = match test.tie && !record.is_tie(test) {
-            true => ("no friction ".to_owned(), theme.faint),
-            false => margin(test, view, theme),
+        let (margin, style) = if test.tie && !record.is_tie(test) {
+            ("no friction ".to_owned(), theme.faint)
+        } else {
+            margin(test, view, theme)
         };
         let style_left = if test.margin < 0.0 && !test.tie {
             theme.strong
@@ -562,9 +565,10 @@ fn sides(record: &ContactRecord, slave: usize, view: &View, theme: &Theme) -> pa
         let text = format!(" side {}: F_n {f_n}, F_t {f_t}, limit {limit}", k + 1);
         Line::styled(text, theme.text)
     };
-    let note = match friction.is_smooth() {
-        true => " unique split",
-        false => " split of least norm; with friction it is not unique",
+    let note = if friction.is_smooth() {
+        " unique split"
+    } else {
+        " split of least norm; with friction it is not unique"
     };
     let mut lines: Vec<Line> = sides.iter().enumerate().map(one).collect();
     lines.push(Line::styled(note, theme.faint));
@@ -604,22 +608,21 @@ fn margin(test: &Test, view: &View, theme: &Theme) -> (String, Style) {
         Dimension::Ratio => "(relative)",
         Dimension::Unknown => "",
     };
-    match test.tie {
-        true => (
+    if test.tie {
+        (
             format!("tie, margin {} {unit} ", long(test.margin)),
             theme.warning,
-        ),
-        false => {
-            let rounded = match dimension {
-                Dimension::Force => round_off.force(test.value),
-                Dimension::Length => round_off.length(test.value),
-                _ => test.value,
-            };
-            let nothing = rounded == 0.0 && test.value != 0.0;
-            let note = if nothing { NOTE } else { "" };
-            let text = format!("margin {} {unit} {note}", long(test.margin));
-            (format!("{} ", text.trim_end()), theme.faint)
-        }
+        )
+    } else {
+        let rounded = match dimension {
+            Dimension::Force => round_off.force(test.value),
+            Dimension::Length => round_off.length(test.value),
+            _ => test.value,
+        };
+        let nothing = rounded == 0.0 && test.value != 0.0;
+        let note = if nothing { NOTE } else { "" };
+        let text = format!("margin {} {unit} {note}", long(test.margin));
+        (format!("{} ", text.trim_end()), theme.faint)
     }
 }
 
@@ -638,12 +641,13 @@ fn theirs(record: &ContactRecord, slave: usize, view: &View) -> Option<String> {
         (None, _) => report::reason(decision, record.t_max != 0.0),
     };
     let rules = rules(decision).unwrap_or("its rule");
-    Some(match differs {
-        true => format!(
+    Some(if differs {
+        format!(
             "{own} ≠ {rules} (◁), which gives {} for the same values.",
             names::mode(decision.wanted)
-        ),
-        false => own,
+        )
+    } else {
+        own
     })
 }
 

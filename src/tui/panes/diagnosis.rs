@@ -48,14 +48,20 @@ pub const PANE: PaneEntry = PaneEntry {
 fn copied(app: &App, view: &View) -> Result<NamedText, String> {
     if let Some(run) = &view.model.finished {
         // As many as in the list Try.
-        let cures = run.findings.iter().filter(|found| !found.cure.is_empty());
-        let cure = cures.take(app.answer + 1).last();
+        let cure = run
+            .findings
+            .iter()
+            .filter(|found| !found.cure.is_empty())
+            .take(app.answer + 1)
+            .last();
         let cure = cure.filter(|cure| !cure.lines.is_empty());
         let cure = cure.ok_or("this cure has no lines for the deck")?;
         return Ok(("the lines for the deck".into(), cure.lines.clone()));
     }
-    let found = view.examination().flatten();
-    let found = found.ok_or("no diagnosis yet; press d")?;
+    let found = view
+        .examination()
+        .flatten()
+        .ok_or("no diagnosis yet; press d")?;
     Ok(("the diagnosis".into(), found.lines().join("\n")))
 }
 
@@ -110,9 +116,10 @@ const HEADINGS: usize = 7;
 fn words(page: &DiagnosisPage, width: usize, app: &App) -> (paint::Lines, usize) {
     let theme = &app.theme;
     let mut lines = Vec::new();
-    let strong = match page.found.fails {
-        true => theme.strong,
-        false => theme.text,
+    let strong = if page.found.fails {
+        theme.strong
+    } else {
+        theme.text
     };
     hang(&mut lines, "What", &page.what, (width, strong, ""), app);
     for (k, text) in page.why.iter().enumerate() {
@@ -265,9 +272,10 @@ fn answers(page: &DiagnosisPage, width: usize, app: &App, view: &View) -> paint:
     let left = problem.nodes.len() - listed.len();
     if left > 0 {
         let all = (0..problem.nodes.len()).filter(|&place| differs(census, place));
-        let text = match all.count() > listed.len() {
-            true => format!(" and {left} more"),
-            false => format!(" and {left} more, the same in all states"),
+        let text = if all.count() > listed.len() {
+            format!(" and {left} more")
+        } else {
+            format!(" and {left} more, the same in all states")
         };
         lines.push(Line::styled(text, theme.faint));
     }
@@ -278,12 +286,13 @@ fn answers(page: &DiagnosisPage, width: usize, app: &App, view: &View) -> paint:
     } else {
         String::new()
     };
-    let text = match selects {
-        true => format!(
+    let text = if selects {
+        format!(
             "{more} Up and Down select, Enter starts from it (:start-from {})",
             at + 1
-        ),
-        false => format!("{more} :start-from N starts from state N"),
+        )
+    } else {
+        format!("{more} :start-from N starts from state N")
     };
     lines.push(Line::styled(format!(" {}", text.trim_start()), theme.faint));
     lines

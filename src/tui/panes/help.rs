@@ -213,9 +213,10 @@ pub fn page(width: usize, theme: &Theme, keymap: &Keymap, context: &Context) -> 
 fn keys(theme: &Theme, keymap: &Keymap) -> paint::Lines {
     let file = config::folder().map(|folder| folder.join(config::KEYS));
     let file = file.map_or(config::KEYS.into(), |file| file.display().to_string());
-    let state = match keymap.is_changed() {
-        true => "key bindings, with the changes in this file; :copy keys copies them",
-        false => "key bindings, in the format of this file; :copy keys copies them",
+    let state = if keymap.is_changed() {
+        "key bindings, with the changes in this file; :copy keys copies them"
+    } else {
+        "key bindings, in the format of this file; :copy keys copies them"
     };
     let mut lines = vec![
         Line::styled(format!(" {state}"), theme.faint),

@@ -49,9 +49,10 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, _: &View) {
     let seen = if same { app.learning.reading.seen } else { 0 };
     lines = lines.into_iter().skip(top).take(room).collect();
     let more = all > shown.end.max(seen);
-    match more {
-        true => lines.push(Line::styled(" ▼ Space: more", app.theme.key)),
-        false => lines.extend(todo(tutor, width, &app.theme)),
+    if more {
+        lines.push(Line::styled(" ▼ Space: more", app.theme.key))
+    } else {
+        lines.extend(todo(tutor, width, &app.theme))
     }
     paint::lines(buffer, inner, &lines);
     if shown.len() < all {
@@ -114,8 +115,9 @@ fn todo(tutor: &Tutor, width: usize, theme: &Theme) -> paint::Lines {
 /// The tutor's text, wrapped. A mark precedes the reply to an answer, so that it does not depend on colour.
 pub fn tutor_lines(tutor: &Tutor, width: usize, theme: &Theme) -> paint::Lines {
     let page = tutor.page();
-    let parts = page.iter().flat_map(|part| paragraph(part, width, theme));
-    parts.collect()
+    page.iter()
+        .flat_map(|part| paragraph(part, width, theme))
+        .collect()
 }
 
 /// The tutor's reply to the last answer.

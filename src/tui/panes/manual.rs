@@ -90,12 +90,11 @@ pub fn draw(buffer: &mut Buffer, area: Rect, reader: &Reader, theme: &Theme) {
         .title(title);
     let inner = block.inner(area);
     block.render(area, buffer);
-    let shown = reader
+    let lines: Vec<Line> = reader
         .lines
         .iter()
         .skip(reader.top)
-        .take(inner.height as usize);
-    let lines: Vec<Line> = shown
+        .take(inner.height as usize)
         .map(|line| styled(line, &reader.search, theme))
         .collect();
     paint::lines(buffer, inner, &lines);

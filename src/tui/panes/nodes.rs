@@ -78,8 +78,9 @@ impl Columns {
             .into_iter()
             .find(|columns| columns.width() <= width);
         wide.unwrap_or_else(|| {
-            let fewer = (0..6).rev().map(|shown| Columns { shown, ..last });
-            fewer
+            (0..6)
+                .rev()
+                .map(|shown| Columns { shown, ..last })
                 .into_iter()
                 .find(|columns| columns.width() <= width)
                 .unwrap_or(Columns { shown: 0, ..last })
@@ -118,8 +119,10 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let count = view.model.contacts.len();
     let selected = app.slave(view);
     let order = app.order(view);
-    let at = order.iter().position(|slave| *slave == selected);
-    let at = at.unwrap_or(0);
+    let at = order
+        .iter()
+        .position(|slave| *slave == selected)
+        .unwrap_or(0);
     let title = title(at, order.len(), count, app);
     let inner = frame(buffer, area, Pane::Nodes, &title, app);
     if count == 0 {
@@ -140,14 +143,15 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
             longest.clamp(4, 20),
         )
     };
-    let columns = match view
+    let columns = if view
         .model
         .contacts
         .iter()
         .any(|contact| contact.area.is_some())
     {
-        true => columns.with_pressures(inner.width as usize),
-        false => columns,
+        columns.with_pressures(inner.width as usize)
+    } else {
+        columns
     };
     let rows = (inner.height as usize).saturating_sub(1);
     let round_off = view.round_off();
@@ -332,9 +336,12 @@ fn modes(
     } else {
         theme::letter
     };
-    let style = |mode| match changed {
-        true => app.theme.mode(mode).add_modifier(Modifier::BOLD),
-        false => app.theme.mode(mode),
+    let style = |mode| {
+        if changed {
+            app.theme.mode(mode).add_modifier(Modifier::BOLD)
+        } else {
+            app.theme.mode(mode)
+        }
     };
     let (before, next) = (view.mode_before(slave), view.mode(slave));
     let arrow = if columns.words { " → " } else { "→" };
@@ -420,10 +427,16 @@ fn number_style(column: usize, record: &ContactRecord, app: &App) -> Style {
         5 => TestedQuantity::Slip,
         _ => return app.theme.text,
     };
-    let mut tests = record.decision.tests.iter().flatten();
-    match tests.any(|test| test.tested == tested && record.is_tie(test)) {
-        true => app.theme.warning,
-        false => app.theme.text,
+    if record
+        .decision
+        .tests
+        .iter()
+        .flatten()
+        .any(|test| test.tested == tested && record.is_tie(test))
+    {
+        app.theme.warning
+    } else {
+        app.theme.text
     }
 }
 

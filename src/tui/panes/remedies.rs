@@ -145,8 +145,11 @@ pub fn row_at(area: Rect, app: &App, view: &View, at: Position) -> Option<usize>
 /// The columns that fit, in the order of [`COLUMNS`], with their widths.
 fn shown(rows: &[[String; 10]], width: usize) -> Vec<(usize, usize)> {
     let wide = |k: usize| {
-        let cells = rows.iter().map(|row| row[k].width());
-        cells.chain([COLUMNS[k].len()]).max().unwrap_or(0)
+        rows.iter()
+            .map(|row| row[k].width())
+            .chain([COLUMNS[k].len()])
+            .max()
+            .unwrap_or(0)
     };
     let mut room = width.saturating_sub(3 + NAME);
     let mut shown = Vec::new();

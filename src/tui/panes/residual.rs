@@ -43,9 +43,12 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         return;
     };
     let words = |value: f64| short(value, view);
-    let percent = |part: f64| match part.is_nan() {
-        true => number::UNREPORTED.to_owned(),
-        false => format!("{} %", number::shortest(100.0 * part)),
+    let percent = |part: f64| {
+        if part.is_nan() {
+            number::UNREPORTED.to_owned()
+        } else {
+            format!("{} %", number::shortest(100.0 * part))
+        }
     };
     let (main, (other, value), limit) = match &view.model.finished {
         None => (
@@ -82,8 +85,8 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         let room = usize::from(plot.width) / NUMBER;
         let first = view.residuals.len().saturating_sub(room);
         let row = |of: &dyn Fn(&(u32, Norms)) -> String| {
-            let cells = view.residuals[first..].iter();
-            let text: String = cells
+            let text: String = view.residuals[first..]
+                .iter()
                 .map(|one| format!("{:>1$}", of(one), NUMBER))
                 .collect();
             Line::styled(text, theme.faint)
@@ -96,20 +99,22 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         paint::lines(buffer, plot, &rows);
     } else if convergence::fits(plot) {
         // Values that an attached solver does not report are left out.
-        let text = view
+        let points: Vec<Point> = view
             .residuals
             .iter()
-            .filter(|(_, norms)| !view.is_unreported(norms.relative));
-        let points: Vec<Point> = text.map(|one| point(one, view)).collect();
+            .filter(|(_, norms)| !view.is_unreported(norms.relative))
+            .map(|one| point(one, view))
+            .collect();
         convergence::draw(buffer, plot, &points, theme);
     }
 }
 
 /// A number of a caption; a dash if an attached solver does not report it.
 fn short(value: f64, view: &View) -> String {
-    match view.is_unreported(value) {
-        true => number::UNREPORTED.into(),
-        false => number::sig4(value),
+    if view.is_unreported(value) {
+        number::UNREPORTED.into()
+    } else {
+        number::sig4(value)
     }
 }
 
@@ -138,9 +143,10 @@ fn point((number, norms): &(u32, Norms), view: &View) -> Point {
 fn judged(view: &View, theme: &Theme) -> Option<Line<'static>> {
     let verdict = view.frame().state.start.verdict.as_ref()?;
     let worst = verdict.largest()?;
-    let (sign, style) = match worst.is_broken() {
-        true => ("✗", theme.warning),
-        false => ("✓", theme.good),
+    let (sign, style) = if worst.is_broken() {
+        ("✗", theme.warning)
+    } else {
+        ("✓", theme.good)
     };
     let node = worst.slave.map(|slave| names::slave(view.model, slave));
     let place = node.map_or(String::new(), |node| format!(" at {node}"));

@@ -109,8 +109,10 @@ pub fn picture(buffer: &mut Buffer, inner: Rect, app: &App, view: &View) -> Opti
     let given = shown_conditions(view, &window);
     let (forces, longest) = forces(&window, view);
     let arrows = || {
-        let arrows = given.arrows.iter();
-        arrows.map(|one| drawn(one, &forces, &window, app))
+        given
+            .arrows
+            .iter()
+            .map(|one| drawn(one, &forces, &window, app))
     };
     for (line, style, _) in arrows() {
         canvas.dotted(line[0], line[1], style, SPARSE);
@@ -155,8 +157,9 @@ fn field(inner: Rect, app: &App, view: &View) -> (Canvas, Window) {
     let projection = app.camera.projection;
     let place = |node: usize| view.magnified(node, (magnified, projection));
     let selected = view.model.contacts.get(app.slave(view));
-    let towards = selected.map(|slave| place(slave.node));
-    let towards = towards.filter(|place| place.iter().all(|x| x.is_finite()));
+    let towards = selected
+        .map(|slave| place(slave.node))
+        .filter(|place| place.iter().all(|x| x.is_finite()));
     let bounds = bounds(view.model, projection, &place);
     let window = Window::new(&canvas, &bounds, &app.camera, towards);
     (
@@ -183,8 +186,13 @@ pub fn slave_at(area: Rect, app: &App, view: &View, at: Position) -> Option<usiz
         let far = u32::from(x.abs_diff(at.x)) + 2 * u32::from(y.abs_diff(at.y));
         (far <= NEAR).then_some((far, slave))
     };
-    let near = view.model.contacts.iter().enumerate().filter_map(far);
-    near.min().map(|(_, slave)| slave)
+    view.model
+        .contacts
+        .iter()
+        .enumerate()
+        .filter_map(far)
+        .min()
+        .map(|(_, slave)| slave)
 }
 
 /// Draws the curve of an element. Where its nodes are close, straight lines between them set the same dots.
@@ -192,9 +200,10 @@ fn draw_curve(canvas: &mut Canvas, window: &Window, nodes: &[Point], style: Styl
     let dots = |points: &[Point]| -> Vec<Dot> { points.iter().map(|&p| window.dot(p)).collect() };
     let straight = dots(nodes);
     let is_close = |ends: &[Dot]| distance(ends[0], ends[1]) < CLOSE;
-    match straight.windows(2).all(is_close) {
-        true => canvas.polyline(&straight, style),
-        false => canvas.polyline(&dots(&curve(nodes)), style),
+    if straight.windows(2).all(is_close) {
+        canvas.polyline(&straight, style)
+    } else {
+        canvas.polyline(&dots(&curve(nodes)), style)
     }
 }
 
@@ -289,10 +298,11 @@ fn gives_way(cell: &Cell) -> bool {
 
 /// Mean position of nodes.
 fn mean(nodes: impl Iterator<Item = usize>, window: &Window, view: &View) -> Point {
-    let places = nodes.map(|node| window.place(view, node));
-    let (sum, count) = places.fold(([0.0; 2], 0.0), |(s, count), p| {
-        ([s[0] + p[0], s[1] + p[1]], count + 1.0)
-    });
+    let (sum, count) = nodes
+        .map(|node| window.place(view, node))
+        .fold(([0.0; 2], 0.0), |(s, count), p| {
+            ([s[0] + p[0], s[1] + p[1]], count + 1.0)
+        });
     sum.map(|x| x / count)
 }
 
@@ -371,8 +381,12 @@ fn forces(window: &Window, view: &View) -> (Vec<[Dot; 2]>, f64) {
         .filter(|f| f.is_finite())
         .fold(0.0, f64::max);
     let scale = FORCE * window.extent / largest;
-    let nodes = view.model.contacts.iter().zip(&event.nodes).enumerate();
-    let lines = nodes
+    let lines = view
+        .model
+        .contacts
+        .iter()
+        .zip(&event.nodes)
+        .enumerate()
         .filter(|(_, (_, node))| size(node.f_n, node.f_t) > 0.0)
         .map(|(slave, (contact, _))| {
             let force = window.projection.force(view.model, event, slave);
@@ -412,10 +426,7 @@ fn drawn(
     let is_covered = forces
         .iter()
         .any(|[tail, tip]| *tail == at && arrow.is_under([tip[0] - tail[0], tail[1] - tip[1]]));
-    let line = match is_covered {
-        true => beside(line),
-        false => line,
-    };
+    let line = if is_covered { beside(line) } else { line };
     (line, app.theme.good, heads)
 }
 
@@ -448,10 +459,10 @@ fn supports(
         };
         (node, glyph)
     });
-    let turns = found.turns.into_iter().map(|(node, _, left)| match left {
-        true => (node, "↺"),
-        false => (node, "↻"),
-    });
+    let turns = found
+        .turns
+        .into_iter()
+        .map(|(node, _, left)| if left { (node, "↺") } else { (node, "↻") });
     for (node, glyph) in supports.chain(turns) {
         if let Some(at) = canvas.cell(window.dot(window.place(view, node))) {
             paint::label(buffer, at, glyph, app.theme.good, &app.theme);
@@ -521,9 +532,10 @@ fn slaves(buffer: &mut Buffer, canvas: &Canvas, window: &Window, app: &App, view
         // The mode in which the drawn forces were found.
         let mode = view.mode_before(slave);
         let style = theme.mode(mode).add_modifier(Modifier::BOLD);
-        let style = match slave == selected {
-            true => style.add_modifier(Modifier::REVERSED),
-            false => style,
+        let style = if slave == selected {
+            style.add_modifier(Modifier::REVERSED)
+        } else {
+            style
         };
         paint::label(buffer, (x, y), theme::letter(mode), style, theme);
         let right = (x + 1, y);
@@ -559,12 +571,13 @@ fn name(buffer: &mut Buffer, canvas: &Canvas, (x, y): (u16, u16), name: &str, th
 /// Caption of the worst point: its mark, its element, and its stretch or that it is inverted.
 fn worst_words(model: &Model, point: &PointDeformation) -> String {
     let element = strain::element(model, point);
-    match point.determinant > 0.0 {
-        true => format!(
+    if point.determinant > 0.0 {
+        format!(
             " {WORST} {element}: stretch {}  ",
             number::sig4(point.stretch)
-        ),
-        false => format!(" {WORST} {element}: inverted  "),
+        )
+    } else {
+        format!(" {WORST} {element}: inverted  ")
     }
 }
 

@@ -126,14 +126,15 @@ pub fn draw(
             Page::Run => "Text of the run".into(),
             Page::Parameters => format!("Parameters of {name}"),
         };
-        match rows.len() > height {
-            true => format!(
+        if rows.len() > height {
+            format!(
                 "{what}  lines {} to {} of {}",
                 top + 1,
                 (top + height).min(rows.len()),
                 rows.len()
-            ),
-            false => what,
+            )
+        } else {
+            what
         }
     });
     let inner = paint::frame(
@@ -145,9 +146,10 @@ pub fn draw(
     );
     let line = |row: &Row| {
         let text: String = row.text.chars().skip(reader.aside).collect();
-        let style = match reader.search.holds(&row.text) {
-            true => theme.selected,
-            false => (row.style)(theme),
+        let style = if reader.search.holds(&row.text) {
+            theme.selected
+        } else {
+            (row.style)(theme)
         };
         Line::styled(
             format!(" {}", paint::cut(&text, width.saturating_sub(1))),
@@ -171,13 +173,16 @@ fn rows(page: Page, width: usize, view: Option<&View>) -> Vec<Row> {
 
 /// The text of a finished run; sentences wrap, tables do not.
 fn printed(lines: Vec<stickslip_debugger::recorded::log::LogLine>, width: usize) -> Vec<Row> {
-    let printed = lines
+    let wrapped = lines
         .into_iter()
-        .filter(|said| said.how == LogOrigin::Printed);
-    let wrapped = printed.flat_map(|said| match said.text.contains("  ") {
-        true => vec![said.text],
-        false => paint::wrap(&said.text, width.saturating_sub(2)),
-    });
+        .filter(|said| said.how == LogOrigin::Printed)
+        .flat_map(|said| {
+            if said.text.contains("  ") {
+                vec![said.text]
+            } else {
+                paint::wrap(&said.text, width.saturating_sub(2))
+            }
+        });
     let row = |text| Row {
         text,
         style: |theme| theme.text,
@@ -223,9 +228,10 @@ fn parameters(all: &[Parameter], width: usize, view: &View) -> Vec<Row> {
             other => other.to_string(),
         };
         let now = present(known, &context);
-        let began = match now == began {
-            true => String::new(),
-            false => format!(", initially {began}"),
+        let began = if now == began {
+            String::new()
+        } else {
+            format!(", initially {began}")
         };
         let text = format!("{name} = {now}   ({}{began})", known.range);
         rows.push(Row {
@@ -243,9 +249,10 @@ fn parameters(all: &[Parameter], width: usize, view: &View) -> Vec<Row> {
                 }),
         );
     }
-    let last = match all.is_empty() {
-        true => "The solver has no parameters.",
-        false => ":set NAME VALUE changes one from here on.",
+    let last = if all.is_empty() {
+        "The solver has no parameters."
+    } else {
+        ":set NAME VALUE changes one from here on."
     };
     rows.push(Row {
         text: last.into(),

@@ -107,9 +107,10 @@ fn scene<'a>(app: &App, view: &View<'a>, width: usize) -> Line<'a> {
     let name = paint::cut(&name, width.saturating_sub(PROGRAM.width()));
     let room = width.saturating_sub(PROGRAM.width() + name.width());
     // A deck has no title, and is called by its name.
-    let title = match view.model.title == name {
-        true => String::new(),
-        false => format!("  {}", view.model.title),
+    let title = if view.model.title == name {
+        String::new()
+    } else {
+        format!("  {}", view.model.title)
     };
     Line::from(vec![
         Span::styled(PROGRAM, app.theme.faint),
@@ -254,8 +255,11 @@ fn outcome(app: &App, view: &View, width: u16) -> paint::Lines {
     // Further lines are indented to the words after the glyph.
     let room = (width as usize).saturating_sub(4);
     let mut words = paint::wrap(&text, room);
-    let asides = tried.into_iter().chain(interventions(view));
-    let asides: Vec<String> = asides.filter(|aside| !text.ends_with(aside)).collect();
+    let asides: Vec<String> = tried
+        .into_iter()
+        .chain(interventions(view))
+        .filter(|aside| !text.ends_with(aside))
+        .collect();
     let aside = paint::cut(&asides.join("   "), room);
     // A long aside needs a line; a short one needs the end of the last line.
     let (most, end) = match aside.width() {

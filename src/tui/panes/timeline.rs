@@ -69,9 +69,10 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     }
     headings(buffer, inner, &columns, view, theme.heading);
     for (row, slaves) in shown.iter().enumerate() {
-        let (mark, style) = match slaves.contains(&selected) {
-            true => ("▸", theme.selected),
-            false => (" ", theme.text),
+        let (mark, style) = if slaves.contains(&selected) {
+            ("▸", theme.selected)
+        } else {
+            (" ", theme.text)
         };
         let y = nodes + row as u16;
         buffer.set_string(inner.x, y, mark, theme.focus);
@@ -81,9 +82,12 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     for column in &columns {
         let strip = &strips[column.at];
         let here = column.at == view.cursor;
-        let reversed = |style: Style| match here {
-            true => style.add_modifier(Modifier::REVERSED),
-            false => style,
+        let reversed = |style: Style| {
+            if here {
+                style.add_modifier(Modifier::REVERSED)
+            } else {
+                style
+            }
         };
         if here {
             buffer.set_string(column.x, nodes - 1, "▼", theme.focus);
@@ -118,9 +122,10 @@ fn visible(inner: Rect, view: &View) -> (u16, Vec<Column>) {
     let names = (0..count).map(|slave| view.slave(slave).width());
     let name = names.max().unwrap_or(0);
     // A folded row has two names.
-    let name = match usize::from(inner.height.saturating_sub(FRAME)) < count {
-        true => (2 * name + 3).clamp(NAME.start, 2 * NAME.end),
-        false => name.clamp(NAME.start, NAME.end),
+    let name = if usize::from(inner.height.saturating_sub(FRAME)) < count {
+        (2 * name + 3).clamp(NAME.start, 2 * NAME.end)
+    } else {
+        name.clamp(NAME.start, NAME.end)
     };
     let name = name + 2;
     let left = inner.x + name as u16;
@@ -218,10 +223,13 @@ fn rule(view: &View, at: usize) -> Option<&'static str> {
     let (then, now) = (before.position, view.strips[at].position);
     let of = |at: stickslip_core::step::event::Position| (at.increment, at.attempt);
     match before.kind == PointKind::Start {
-        false if view.model.finished.is_some() => match then.increment == now.increment {
-            false => Some("║"),
-            true => (then.attempt != now.attempt).then_some("│"),
-        },
+        false if view.model.finished.is_some() => {
+            if then.increment == now.increment {
+                (then.attempt != now.attempt).then_some("│")
+            } else {
+                Some("║")
+            }
+        }
         true => None,
         false if of(then) != of(now) => Some("║"),
         false => (then.major != now.major).then_some("│"),
@@ -296,9 +304,10 @@ fn finished_cell(strip: &Strip, slave: usize, letter: u8, app: &App) -> (&'stati
         _ => ("?", Mode::Free),
     };
     let style = app.theme.mode(mode);
-    match strip.changes(slave) {
-        true => (letter, style.add_modifier(Modifier::BOLD)),
-        false => (letter, style),
+    if strip.changes(slave) {
+        (letter, style.add_modifier(Modifier::BOLD))
+    } else {
+        (letter, style)
     }
 }
 
@@ -343,8 +352,10 @@ fn bracket(
         _ => return,
     };
     let first = (column.at + 1).saturating_sub(cycle.period as usize);
-    let from = columns.iter().find(|column| column.at >= first);
-    let from = from.map_or(column.x, |column| column.x);
+    let from = columns
+        .iter()
+        .find(|column| column.at >= first)
+        .map_or(column.x, |column| column.x);
     let text = format!("{}-cycle", cycle.period);
     let ends = (from, column.x);
     columns::bracket(buffer, inner.right(), y, ends, &text, app.theme.bad);

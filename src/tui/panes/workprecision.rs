@@ -105,8 +105,9 @@ fn plot_runs(buffer: &mut Buffer, plot: Rect, page: &ChartPage, theme: &Theme) {
     let mut free = 0;
     for value in x.ticks(usize::from(plot.width) / 9) {
         let (at, words) = (column(value), written(value));
-        let left = at.saturating_sub(words.len() as u16 / 2);
-        let left = left.min(plot.right().saturating_sub(words.len() as u16));
+        let left = at
+            .saturating_sub(words.len() as u16 / 2)
+            .min(plot.right().saturating_sub(words.len() as u16));
         if left >= free {
             frame.below(buffer, left, &words, theme.faint);
             free = left + words.len() as u16 + 1;
@@ -230,16 +231,16 @@ fn details(page: &ChartPage, theme: &Theme, width: usize, has_legend: bool) -> p
     ];
     let lines = lines.map(|(text, style)| Line::styled(paint::cut(&text, width), style));
     // Without a column for the series, they replace the source.
-    let last = match has_legend {
-        true => {
-            let about = format!(" {}", about.map_or("", String::as_str));
-            vec![Line::styled(paint::cut(&about, width), theme.faint)]
-        }
-        false => {
-            let names = chart.series.iter().enumerate();
-            let names = names.map(|(k, name)| format!("{} {name}", letter(k, false)));
-            paint::wrapped(&names.collect::<Vec<_>>().join("  "), width, theme.faint)
-        }
+    let last = if has_legend {
+        let about = format!(" {}", about.map_or("", String::as_str));
+        vec![Line::styled(paint::cut(&about, width), theme.faint)]
+    } else {
+        let names = chart
+            .series
+            .iter()
+            .enumerate()
+            .map(|(k, name)| format!("{} {name}", letter(k, false)));
+        paint::wrapped(&names.collect::<Vec<_>>().join("  "), width, theme.faint)
     };
     lines.into_iter().chain(last).collect()
 }

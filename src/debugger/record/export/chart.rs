@@ -72,14 +72,12 @@ fn rounded(range: [f64; 2], (long, apart): (f64, f64)) -> [f64; 2] {
 
 /// The range of some values with 0.
 fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
-    let finite = values.filter(|value| value.is_finite());
-    let (low, high) = finite.fold((0.0_f64, 0.0_f64), |(low, high), x| {
-        (low.min(x), high.max(x))
-    });
-    match high > low {
-        true => [low, high],
-        false => [0.0, 1.0],
-    }
+    let (low, high) = values
+        .filter(|value| value.is_finite())
+        .fold((0.0_f64, 0.0_f64), |(low, high), x| {
+            (low.min(x), high.max(x))
+        });
+    if high > low { [low, high] } else { [0.0, 1.0] }
 }
 
 /// The load over the requested monitor, or over the first that moves.
@@ -146,8 +144,9 @@ pub(super) fn cone(sheet: &mut Sheet, shown: &ExportState, high: f64) -> Result<
         let record = shown.event.and_then(|event| event.nodes.get(slave));
         record.map_or(0.0, |record| record.f_n.hypot(record.f_t))
     };
-    let slaves = 0..model.contacts.len();
-    let largest = slaves.rev().max_by(|a, b| size(*a).total_cmp(&size(*b)));
+    let largest = (0..model.contacts.len())
+        .rev()
+        .max_by(|a, b| size(*a).total_cmp(&size(*b)));
     let Some(slave) = shown.picture.node.or(largest) else {
         return sheet.paragraph(&["the scene has no slave nodes".to_owned()], LABEL, GREY);
     };
@@ -195,9 +194,10 @@ pub(super) fn cone(sheet: &mut Sheet, shown: &ExportState, high: f64) -> Result<
     if has_web {
         let margin = 0.06 * (top - low);
         let span = [low - margin, top + margin];
-        let less = match origin == 0.0 {
-            true => String::new(),
-            false => format!(" less {}", sig4(origin)),
+        let less = if origin == 0.0 {
+            String::new()
+        } else {
+            format!(" less {}", sig4(origin))
         };
         let (used, found) = (format!("T_max used{less}"), format!("T_max found{less}"));
         let ranges = ((used.as_str(), span), (found.as_str(), span));

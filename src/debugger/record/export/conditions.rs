@@ -70,17 +70,17 @@ impl ShapeDrawing<'_> {
     fn aside(&self, arrow: &ConditionArrow) -> (f64, f64) {
         let model = &self.shown.scene.model;
         let is_covered = self.shown.event.is_some_and(|event| {
-            let mut contacts = model.contacts.iter().enumerate();
-            contacts.any(|(slave, contact)| {
+            model.contacts.iter().enumerate().any(|(slave, contact)| {
                 let force = || OBLIQUE.force(model, event, slave);
                 (self.now)(contact.node) == arrow.at && arrow.is_under(force())
             })
         });
         let [x, y] = arrow.along;
         let length = x.hypot(y).max(1e-300).copysign(-x);
-        match is_covered {
-            true => (ASIDE * y / length, ASIDE * x / length),
-            false => (0.0, 0.0),
+        if is_covered {
+            (ASIDE * y / length, ASIDE * x / length)
+        } else {
+            (0.0, 0.0)
         }
     }
 }

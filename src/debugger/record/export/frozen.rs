@@ -374,9 +374,10 @@ fn unsupported(model: &Model, problem: &InterfaceProblem) -> Result<(), NoExport
         .filter(|node| node.moves() != [true; 2])
         .map(|node| names::slave(model, node.slave))
         .collect();
-    match carried.is_empty() {
-        true => Ok(()),
-        false => Err(NoExport::EmbeddedFile(carried.join(", "))),
+    if carried.is_empty() {
+        Ok(())
+    } else {
+        Err(NoExport::EmbeddedFile(carried.join(", ")))
     }
 }
 
@@ -600,9 +601,10 @@ pub fn compared(problem: &InterfaceProblem, text: &str) -> Result<f64, FileMisma
                 return ControlFlow::Break(Err(FileMismatch::Apart { minor, by: worst }));
             }
         }
-        match settled || failed {
-            true => ControlFlow::Break(Ok(())),
-            false => ControlFlow::Continue(()),
+        if settled || failed {
+            ControlFlow::Break(Ok(()))
+        } else {
+            ControlFlow::Continue(())
         }
     });
     match end {

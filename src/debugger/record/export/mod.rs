@@ -148,8 +148,9 @@ pub fn kind(file: &Path) -> Result<&'static ExportKind, ExportError> {
     found.ok_or_else(|| {
         let known = KINDS
             .iter()
-            .map(|k| format!(".{} ({})", k.extension, k.what));
-        let known = known.collect::<Vec<_>>().join(", ");
+            .map(|k| format!(".{} ({})", k.extension, k.what))
+            .collect::<Vec<_>>()
+            .join(", ");
         let file = file.display();
         ExportError::NoFile(format!("{file}: unknown file kind; available: {known}"))
     })

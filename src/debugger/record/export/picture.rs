@@ -160,9 +160,10 @@ fn caption(shown: &ExportState) -> String {
         ended => format!("; {ended}"),
     };
     let text = format!("{at}, load {load}: {what}{more}");
-    match text.ends_with('…') {
-        true => text,
-        false => text + ".",
+    if text.ends_with('…') {
+        text
+    } else {
+        text + "."
     }
 }
 
@@ -259,9 +260,10 @@ impl ShapeDrawing<'_> {
 
     fn stroke(&mut self, points: &[Point], pen: &Pen) {
         for chain in self.window.inside(&curve(points)) {
-            match pen.dashed {
-                true => self.sheet.dashed(&chain, pen.width, pen.colour),
-                false => self.sheet.line(&chain, pen.width, pen.colour),
+            if pen.dashed {
+                self.sheet.dashed(&chain, pen.width, pen.colour)
+            } else {
+                self.sheet.line(&chain, pen.width, pen.colour)
             }
         }
     }
@@ -374,8 +376,15 @@ impl ShapeDrawing<'_> {
         let Some(event) = self.shown.event.filter(|_| largest > 0.0) else {
             return 0.0;
         };
-        let contacts = self.shown.scene.model.contacts.iter().zip(&event.nodes);
-        for (slave, (contact, found)) in contacts.enumerate() {
+        for (slave, (contact, found)) in self
+            .shown
+            .scene
+            .model
+            .contacts
+            .iter()
+            .zip(&event.nodes)
+            .enumerate()
+        {
             let force = OBLIQUE.force(&self.shown.scene.model, event, slave);
             let scale = FORCE / largest;
             let node = self.at(contact.node);
@@ -477,9 +486,10 @@ impl ShapeDrawing<'_> {
         self.sheet
             .text((x + 10.0, y), "outward side", SMALL, BLACK, Anchor::Left);
         let moved = moved(self.shown);
-        let scale = match magnified == 1.0 {
-            true => "to scale".to_owned(),
-            false => format!("magnified ×{}", shortest(magnified)),
+        let scale = if magnified == 1.0 {
+            "to scale".to_owned()
+        } else {
+            format!("magnified ×{}", shortest(magnified))
         };
         let number = numbered.map_or(String::new(), |row| {
             format!(" ({row}): the node in row {row} of the table.")
@@ -534,8 +544,12 @@ fn size(found: &ContactRecord) -> f64 {
 fn largest(shown: &ExportState) -> f64 {
     let Some(event) = shown.event else { return 0.0 };
     let round_off = RoundOff::new(&shown.scene.model, &event.before);
-    let sizes = event.nodes.iter().map(|found| round_off.arrow(size(found)));
-    sizes.filter(|f| f.is_finite()).fold(0.0, f64::max)
+    event
+        .nodes
+        .iter()
+        .map(|found| round_off.arrow(size(found)))
+        .filter(|f| f.is_finite())
+        .fold(0.0, f64::max)
 }
 
 /// The largest marker size without overlap.
@@ -545,11 +559,14 @@ fn radius(window: &Window, model: &Model, now: &dyn Fn(usize) -> Point) -> f64 {
         .iter()
         .map(|c| window.at(now(c.node)))
         .collect();
-    let apart = at.windows(2).map(|pair| {
-        let (a, b) = (pair[0], pair[1]);
-        (a.0 - b.0).hypot(a.1 - b.1)
-    });
-    let apart = apart.filter(|d| *d > 0.0).fold(f64::INFINITY, f64::min);
+    let apart = at
+        .windows(2)
+        .map(|pair| {
+            let (a, b) = (pair[0], pair[1]);
+            (a.0 - b.0).hypot(a.1 - b.1)
+        })
+        .filter(|d| *d > 0.0)
+        .fold(f64::INFINITY, f64::min);
     (0.34 * apart).clamp(2.0, 5.0)
 }
 
@@ -563,8 +580,10 @@ fn mode(shown: &ExportState, slave: usize) -> Mode {
 fn moved(shown: &ExportState) -> f64 {
     let model = &shown.scene.model;
     let far = |node: usize| outline::displacement(model, &shown.state.u, node);
-    let all = (0..model.nodes.len()).map(far).filter(|d| d.is_finite());
-    let largest = all.fold(0.0, f64::max);
+    let largest = (0..model.nodes.len())
+        .map(far)
+        .filter(|d| d.is_finite())
+        .fold(0.0, f64::max);
     let round_off = shown.event.map(|event| RoundOff::new(model, &event.before));
     round_off.map_or(largest, |round_off| round_off.length(largest))
 }

@@ -88,8 +88,10 @@ fn mean_distance(line: &Line, other: &Line) -> f64 {
     };
     let (own, others) = (few(&line.at, FEW), few(&other.at, 16 * FEW));
     let nearest = |a: &[f64; 2]| {
-        let far = others.iter().map(|b| distance(*a, *b));
-        far.fold(f64::INFINITY, f64::min)
+        others
+            .iter()
+            .map(|b| distance(*a, *b))
+            .fold(f64::INFINITY, f64::min)
     };
     own.iter().map(nearest).sum::<f64>() / own.len().max(1) as f64
 }

@@ -119,8 +119,10 @@ impl Bands {
             (per_band, per_band * (bands as usize).max(1))
         };
         // The largest cells with which all minor iterations fit, or else the smallest.
-        let factors = (0..=20).map(|k| LARGEST - 0.1 * f64::from(k));
-        let fits = factors.into_iter().find(|f| fitting(*f).1 >= solved);
+        let fits = (0..=20)
+            .map(|k| LARGEST - 0.1 * f64::from(k))
+            .into_iter()
+            .find(|f| fitting(*f).1 >= solved);
         let factor = fits.unwrap_or(1.0);
         let (per_band, most) = fitting(factor);
         let (count, per_band) = (solved.min(most), per_band.min(solved.max(1)));
@@ -193,19 +195,19 @@ pub(super) fn draw(
         return Ok(());
     }
     let all = strips.iter().filter(|s| s.kind.is_solved()).count();
-    let head = match all > columns.len() {
-        true => {
-            let (from, to) = (shortest(first.load_factor), shortest(end.load_factor));
-            let loads = match from == to {
-                true => format!("load {to}"),
-                false => format!("loads {from} to {to}"),
-            };
-            format!(
-                "Modes by minor iteration, the last {}, {loads}",
-                columns.len()
-            )
-        }
-        false => "Modes by minor iteration".to_owned(),
+    let head = if all > columns.len() {
+        let (from, to) = (shortest(first.load_factor), shortest(end.load_factor));
+        let loads = if from == to {
+            format!("load {to}")
+        } else {
+            format!("loads {from} to {to}")
+        };
+        format!(
+            "Modes by minor iteration, the last {}, {loads}",
+            columns.len()
+        )
+    } else {
+        "Modes by minor iteration".to_owned()
     };
     sheet.paragraph(&[head], LABEL, BLACK)?;
     let mut before = None;

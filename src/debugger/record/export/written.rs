@@ -18,9 +18,10 @@ pub(super) fn ron(shown: &ExportState, stepper: &mut Stepper) -> Result<Vec<u8>,
     }
     let (problem, state) = problem(shown, stepper)?;
     let origin = Origin {
-        at: match state.next == shown.state.next {
-            true => shown.origin.at,
-            false => state.next,
+        at: if state.next == shown.state.next {
+            shown.origin.at
+        } else {
+            state.next
         },
         ..shown.origin.clone()
     };
@@ -80,10 +81,11 @@ pub fn scene(scene: &Scene) -> Result<String, ExportError> {
     }
     let text = format!("{head}.\n{text}\n");
     let read = Scene::from_text(&scene.name, &text, &[]).map_err(|e| unwritable(e.to_string()))?;
-    match read.spec == scene.spec {
-        true => Ok(text),
-        false => Err(unwritable(
+    if read.spec == scene.spec {
+        Ok(text)
+    } else {
+        Err(unwritable(
             "the text does not read back as the same scene".to_owned(),
-        )),
+        ))
     }
 }

@@ -124,8 +124,12 @@ fn explained(mut run: CalculixRun, deck: Option<Deck>) -> Result<CalculixRun, St
     let mut shape = deck.as_ref().map(DeckShape::new);
     if let Some(shape) = shape.as_ref().filter(|_| run.files.slaves.is_empty()) {
         let label = |node: usize| shape.deck.nodes[node].label.try_into().ok();
-        let nodes = shape.pairs.iter().flat_map(|pair| &pair.nodes);
-        let labels: BTreeSet<u32> = nodes.filter_map(|node| label(node.node)).collect();
+        let labels: BTreeSet<u32> = shape
+            .pairs
+            .iter()
+            .flat_map(|pair| &pair.nodes)
+            .filter_map(|node| label(node.node))
+            .collect();
         run.files.slaves = labels.into_iter().map(Slave::Node).collect();
         run = CalculixRun::new(run.name, run.files);
     }
@@ -255,9 +259,12 @@ impl RecordedRun {
                 major: 1,
                 minor: this.number,
             },
-            load_factor: row.map_or(f64::NAN, |row| match row.converged {
-                true => row.total_time,
-                false => row.total_time + row.size,
+            load_factor: row.map_or(f64::NAN, |row| {
+                if row.converged {
+                    row.total_time
+                } else {
+                    row.total_time + row.size
+                }
             }),
             arc: None,
             drag: 0.0,

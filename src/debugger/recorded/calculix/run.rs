@@ -205,8 +205,10 @@ impl CalculixRun {
     /// Number of iterations of an attempt; the .sta also counts those that the other files omit.
     pub fn iterations(&self, attempt: usize) -> usize {
         let attempt = &self.files.attempts[attempt];
-        let counted = attempt.row.map(|row| row.iterations as usize);
-        counted.unwrap_or(attempt.iterations.len())
+        attempt
+            .row
+            .map(|row| row.iterations as usize)
+            .unwrap_or(attempt.iterations.len())
     }
 
     /// Name of an attempt: step.increment.attempt.
@@ -245,15 +247,18 @@ fn switching(files: &CalculixFiles) -> Vec<Switching> {
 }
 
 fn elements(closed: &[ClosedContact]) -> u32 {
-    let counts = closed.iter().map(|closed| closed.elements);
-    counts.fold(0, u32::saturating_add)
+    closed
+        .iter()
+        .map(|closed| closed.elements)
+        .fold(0, u32::saturating_add)
 }
 
 /// A face by its corners; a triangle has three.
 pub fn face(corners: &[u32; 4]) -> String {
     let [a, b, c, d] = corners;
-    match c == d {
-        true => format!("{a} {b} {c}"),
-        false => format!("{a} {b} {c} {d}"),
+    if c == d {
+        format!("{a} {b} {c}")
+    } else {
+        format!("{a} {b} {c} {d}")
     }
 }

@@ -9,8 +9,6 @@
 //! | `pressure` | of the last result in the .frd; NaN elsewhere |
 
 use super::run::CalculixRun;
-use std::collections::HashMap;
-use stickslip_exchange::calculix::cel::Slave;
 use stickslip_exchange::mesh::{Cell, CellKind};
 use stickslip_exchange::vtu::{Array, Grid, Values};
 
@@ -25,19 +23,14 @@ pub fn grid(run: &CalculixRun, pressures: &[(u32, f64)]) -> Result<(Grid, usize)
             run.name
         )
     })?;
-    let places = deck.nodes.iter().enumerate();
-    let places: HashMap<u64, usize> = places.map(|(k, node)| (node.label, k)).collect();
+    let places = deck.labels();
     let place = |label: u32| places.get(&u64::from(label)).copied();
     let count = deck.nodes.len();
     let (mut switches, mut most, mut status) = (vec![-1; count], vec![-1; count], vec![-1; count]);
     let mut lost = 0;
     let last = run.files.iterations.len().checked_sub(1);
     for (slave, of) in run.files.slaves.iter().enumerate() {
-        let labels = match of {
-            Slave::Node(node) => vec![*node],
-            Slave::Face(corners) => corners.to_vec(),
-        };
-        let nodes: Vec<usize> = labels.into_iter().filter_map(place).collect();
+        let nodes: Vec<usize> = of.nodes().iter().copied().filter_map(place).collect();
         lost += usize::from(nodes.is_empty());
         let found = run.switching_of(slave);
         let whole = |count: usize| i32::try_from(count).unwrap_or(i32::MAX);

@@ -25,8 +25,11 @@ const MOST_MEMBERS: usize = 4;
 /// Numbers of steps, increments, attempts, iterations and contacts.
 fn size(run: &CalculixRun) -> String {
     let files = &run.files;
-    let attempts = files.attempts.iter();
-    let mut increments: Vec<_> = attempts.map(|a| (a.step, a.increment)).collect();
+    let mut increments: Vec<_> = files
+        .attempts
+        .iter()
+        .map(|a| (a.step, a.increment))
+        .collect();
     increments.dedup();
     let mut steps: Vec<_> = increments.iter().map(|(step, _)| step).collect();
     steps.dedup();
@@ -97,9 +100,10 @@ pub fn attempt(run: &CalculixRun, attempt: usize) -> String {
         let _ = write!(text, "; {cycle}");
     }
     if let Some(row) = this.row {
-        let start = match row.converged {
-            true => row.total_time - row.size,
-            false => row.total_time,
+        let start = if row.converged {
+            row.total_time - row.size
+        } else {
+            row.total_time
         };
         // Remove round-off from subtracting printed numbers.
         let start = (start * 1e6).round() / 1e6;
@@ -114,16 +118,16 @@ fn cycle(run: &CalculixRun, attempt: usize) -> Option<String> {
     let number = run.files.iterations[cycle.iterations.start].number;
     let residual = |k| Some(shortest(run.norms(k)?.residual));
     let residuals: Vec<String> = cycle.iterations.clone().filter_map(residual).collect();
-    let residuals = match residuals.is_empty() {
-        true => String::new(),
-        false => format!(", residuals {} %", residuals.join(", ")),
+    let residuals = if residuals.is_empty() {
+        String::new()
+    } else {
+        format!(", residuals {} %", residuals.join(", "))
     };
-    let members = match cycle.members.is_empty() {
-        true => format!("no contact element changes; {NO_MODES}"),
-        false => {
-            let names = cycle.members.iter().map(|slave| run.slave(*slave));
-            format!("{} change", first_of(names, MOST_MEMBERS, ", "))
-        }
+    let members = if cycle.members.is_empty() {
+        format!("no contact element changes; {NO_MODES}")
+    } else {
+        let names = cycle.members.iter().map(|slave| run.slave(*slave));
+        format!("{} change", first_of(names, MOST_MEMBERS, ", "))
     };
     Some(format!(
         "cycle of period {} from iteration {number}{residuals}; {members}",
@@ -164,9 +168,10 @@ pub fn contact(run: &CalculixRun, iteration: usize, slave: usize) -> String {
         Some(closed) => {
             let face = |closed: &stickslip_exchange::calculix::cel::ClosedContact| {
                 let face = face(&run.files.masters[closed.master as usize]);
-                match points {
-                    true => format!("{face} at {}", counted(closed.elements as usize, "point")),
-                    false => face,
+                if points {
+                    format!("{face} at {}", counted(closed.elements as usize, "point"))
+                } else {
+                    face
                 }
             };
             let faces: Vec<String> = closed.iter().map(face).collect();
@@ -175,8 +180,11 @@ pub fn contact(run: &CalculixRun, iteration: usize, slave: usize) -> String {
     };
     if let Some(switching) = run.switching_of(slave) {
         let attempt = run.attempt(iteration);
-        let here = switching.attempts.iter().find(|(own, _)| *own == attempt);
-        let here = here.map_or(0, |(_, count)| *count);
+        let here = switching
+            .attempts
+            .iter()
+            .find(|(own, _)| *own == attempt)
+            .map_or(0, |(_, count)| *count);
         let (place, most) = switching.most();
         let _ = write!(
             text,
@@ -197,9 +205,10 @@ pub fn letter(run: &CalculixRun, iteration: usize, slave: usize) -> u8 {
         Status::Moved => b'M',
         Status::Part(tenths) => b'0' + tenths,
     };
-    match run.files.iterations[iteration].kept {
-        true => letter.to_ascii_lowercase(),
-        false => letter,
+    if run.files.iterations[iteration].kept {
+        letter.to_ascii_lowercase()
+    } else {
+        letter
     }
 }
 
@@ -210,14 +219,14 @@ pub fn text(run: &CalculixRun) -> String {
         let _ = writeln!(text, "note: {note}");
     }
     let _ = write!(text, "{NO_MODES_IN_FULL}\n\n{}", attempts(run));
-    let attempts = 0..run.files.attempts.len();
-    let cycles = attempts.filter_map(|k| Some((k, cycle(run, k)?)));
-    let cycles: Vec<String> = cycles
+    let cycles: Vec<String> = (0..run.files.attempts.len())
+        .filter_map(|k| Some((k, cycle(run, k)?)))
         .map(|(k, cycle)| format!("{}: {cycle}\n", run.attempt_name(k)))
         .collect();
-    text += &match cycles.is_empty() {
-        true => "\nNo cycles.\n".into(),
-        false => format!("\nCycles\n{}", cycles.concat()),
+    text += &if cycles.is_empty() {
+        "\nNo cycles.\n".into()
+    } else {
+        format!("\nCycles\n{}", cycles.concat())
     };
     text + &switching(run) + &causes(run)
 }
@@ -226,15 +235,17 @@ pub fn text(run: &CalculixRun) -> String {
 fn causes(run: &CalculixRun) -> String {
     let causes = run.findings.iter().enumerate().map(|(k, found)| {
         let (number, rule, cause, advice) = (k + 1, found.rule, &found.cause, found.advice());
-        let cure = match advice.is_empty() {
-            true => String::new(),
-            false => format!("   Cure: {advice}\n"),
+        let cure = if advice.is_empty() {
+            String::new()
+        } else {
+            format!("   Cure: {advice}\n")
         };
         format!("{number}. {rule}: {cause}\n{cure}")
     });
-    match run.findings.is_empty() {
-        true => "\nNo rule applies to this run.\n".into(),
-        false => format!("\nCauses\n{}", causes.collect::<String>()),
+    if run.findings.is_empty() {
+        "\nNo rule applies to this run.\n".into()
+    } else {
+        format!("\nCauses\n{}", causes.collect::<String>())
     }
 }
 

@@ -65,15 +65,19 @@ impl Helper {
         let known = reported.findings;
         found.fails |= matches!(state.status, Status::Failed(_));
         let count = found.census.as_ref().map_or(0, |c| c.answers.len());
-        let answers = (1..=count.min(2)).map(|n| {
-            format!("start from the consistent state {n} (:start-from {n} forces its modes)")
-        });
-        let mut tries: Vec<String> = answers.collect();
+        let mut tries: Vec<String> = (1..=count.min(2))
+            .map(|n| {
+                format!("start from the consistent state {n} (:start-from {n} forces its modes)")
+            })
+            .collect();
         if tries.is_empty() && reported.changing {
             tries.push("force one of the changing nodes into another mode (m)".into());
         }
-        let tries = tries.iter().filter(|_| self.offers.force);
-        let tries = tries.map(|text| TryLine::by_hand(text)).collect();
+        let tries = tries
+            .iter()
+            .filter(|_| self.offers.force)
+            .map(|text| TryLine::by_hand(text))
+            .collect();
         // These trials walk the problem; the solver itself may do something else.
         let offered = |fact: &Fact| !fact.text.starts_with("tried: ");
         found.facts.retain(offered);

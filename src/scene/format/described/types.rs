@@ -46,8 +46,9 @@ pub(crate) fn contains(types: &[Type], name: &str) -> bool {
 
 /// `head(field: …, …)` with the required fields.
 pub(crate) fn blank_form(head: &str, fields: &[(&str, bool, String)]) -> String {
-    let required = fields.iter().filter(|(_, optional, _)| !optional);
-    let written: Vec<String> = required
+    let written: Vec<String> = fields
+        .iter()
+        .filter(|(_, optional, _)| !optional)
         .map(|(name, _, blank)| format!("{name}: {blank}"))
         .collect();
     format!("{head}({})", written.join(", "))

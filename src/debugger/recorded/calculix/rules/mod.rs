@@ -13,6 +13,7 @@ mod pairs;
 mod record;
 mod resting;
 pub mod shape;
+mod sorted_points;
 mod steps;
 mod supports;
 
@@ -34,9 +35,8 @@ enum Rule {
 
 use Rule::{Deck, Mesh, Record};
 
-/// The rules, those that explain most failures by themselves first.
+/// The rules, those that explain most failures by themselves first; reversed faces come before them.
 const RULES: &[Rule] = &[
-    Mesh(pairs::reversed_faces),
     Mesh(bodies::unconnected),
     Mesh(bodies::unmerged),
     Mesh(pairs::tie_too_far),
@@ -69,7 +69,8 @@ pub fn examine(deck: Option<&DeckShape>, run: Option<&CalculixRun>) -> Vec<RunFi
     let is_complete = deck
         .zip(run)
         .is_some_and(|(shape, run)| record::is_complete(run, shape));
-    let is_reversed = deck.is_some_and(|deck| !pairs::reversed_faces(deck).is_empty());
+    let mut found = deck.map(pairs::reversed_faces).unwrap_or_default();
+    let is_reversed = !found.is_empty();
     let findings = |rules: &[Rule]| -> Vec<RunFinding> {
         let findings = rules.iter().flat_map(|rule| match (rule, deck, run) {
             (Mesh(rule), Some(deck), _) => rule(deck),
@@ -79,13 +80,13 @@ pub fn examine(deck: Option<&DeckShape>, run: Option<&CalculixRun>) -> Vec<RunFi
         });
         findings.collect()
     };
-    let mut found = findings(RULES);
+    found.extend(findings(RULES));
     let mut symptoms = findings(SYMPTOMS);
     if !found.is_empty() {
-        let advice = symptoms
+        symptoms
             .iter_mut()
-            .flat_map(|f| [&mut f.cure, &mut f.lines]);
-        advice.for_each(String::clear);
+            .flat_map(|f| [&mut f.cure, &mut f.lines])
+            .for_each(String::clear);
     }
     found.append(&mut symptoms);
     if let Some(run) = run.filter(|_| !is_reversed) {

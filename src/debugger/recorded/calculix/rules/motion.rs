@@ -3,9 +3,8 @@
 use super::numbers::vector;
 use super::shape::{DeckShape, PairShape, SlaveGap, Vector};
 use nalgebra::{Matrix3, SMatrix, SVector};
-use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
-use stickslip_exchange::inp::deck::{Direction, Normal, Value, Volume};
+use stickslip_exchange::inp::deck::{Value, Volume};
 
 /// Translations along x, y, z, then rotations about them, scaled by the body's size.
 pub type Motion = SVector<f64, 6>;
@@ -34,7 +33,7 @@ pub struct GroupMotion {
 impl GroupMotion {
     /// A group at the end of a step.
     pub fn new(shape: &DeckShape, group: usize, step: usize) -> GroupMotion {
-        let nodes = (0..shape.deck.nodes.len()).filter(|n| shape.group(*n) == Some(group));
+        let nodes = shape.group_nodes(group);
         let at: Vec<Vector> = nodes.map(|node| shape.at(node)).collect();
         let centre = at.iter().sum::<Vector>() / at.len().max(1) as f64;
         let size = at.iter().map(|p| (p - centre).norm()).fold(0.0, f64::max);
@@ -48,9 +47,9 @@ impl GroupMotion {
         };
         for value in supports(shape, step) {
             if shape.group(value.node) == Some(group)
-                && let Some(along) = axis(value.direction)
+                && let Some(axis) = value.direction.axis()
             {
-                this.hold(shape.at(value.node), along);
+                this.hold(shape.at(value.node), Vector::ith(axis, 1.0));
             }
         }
         let forces = this.forces.values();
@@ -65,8 +64,11 @@ impl GroupMotion {
 
     /// The loaded nodes.
     pub fn loaded(&self) -> BTreeSet<usize> {
-        let nodes = self.forces.values().flat_map(|force| &force.nodes);
-        nodes.copied().collect()
+        self.forces
+            .values()
+            .flat_map(|force| &force.nodes)
+            .copied()
+            .collect()
     }
 
     /// The rigid motion that moves a point along a direction.
@@ -90,42 +92,38 @@ impl GroupMotion {
     ) {
         for node in touching {
             let at = shape.at(node.node);
-            match sticks {
-                true => [Vector::x(), Vector::y(), Vector::z()]
-                    .into_iter()
-                    .for_each(|along| self.hold(at, along)),
-                false => self.hold(at, pair.masters[node.face].normal),
+            if sticks {
+                (0..3).for_each(|k| self.hold(at, Vector::ith(k, 1.0)));
+            } else {
+                self.hold(at, pair.masters[node.face].normal);
             }
         }
     }
 
     /// The free motions as columns of unit length.
-    pub fn free(&self, modes: [bool; 6]) -> Vec<Motion> {
+    pub fn free(&self, shape: &DeckShape) -> Vec<Motion> {
         let mut supports = self.supports;
         let largest = supports.trace().max(1.0);
-        for (k, _) in modes.iter().enumerate().filter(|(_, moves)| !**moves) {
+        let modes = shape.modes(self.group);
+        for k in (0..6).filter(|k| !modes[*k]) {
             supports[(k, k)] += largest;
         }
         let eigen = supports.symmetric_eigen();
-        let values = eigen.eigenvalues.iter().enumerate();
-        let free = values.filter(|(_, value)| **value < FREE * largest);
-        free.map(|(k, _)| eigen.eigenvectors.column(k).into_owned())
+        eigen
+            .eigenvalues
+            .iter()
+            .enumerate()
+            .filter(|(_, value)| **value < FREE * largest)
+            .map(|(k, _)| eigen.eigenvectors.column(k).into_owned())
             .collect()
     }
 
     /// Whether the load does work on one of the motions.
     pub fn is_loaded(&self, free: &[Motion]) -> bool {
-        let work = free.iter().map(|motion| motion.dot(&self.load).abs());
-        work.fold(0.0, f64::max) > LOADED * self.load.norm()
-    }
-}
-
-fn axis(direction: Direction) -> Option<Vector> {
-    match direction {
-        Direction::X => Some(Vector::x()),
-        Direction::Y => Some(Vector::y()),
-        Direction::Z => Some(Vector::z()),
-        Direction::Rotation => None,
+        free.iter()
+            .map(|motion| motion.dot(&self.load).abs())
+            .fold(0.0, f64::max)
+            > LOADED * self.load.norm()
     }
 }
 
@@ -156,18 +154,14 @@ fn forces(shape: &DeckShape, step: usize) -> Vec<Force> {
     let Some(step) = deck.steps.get(step) else {
         return Vec::new();
     };
-    let part = |amplitude: Option<usize>| match amplitude {
-        None => 1.0,
-        Some(_) => shape.factor(step, amplitude, step.time.period),
-    };
+    let part = |amplitude: Option<usize>| shape.last_factor(step, amplitude);
     let mut all = Vec::new();
     for force in &step.forces {
-        let along = axis(force.direction).map(|along| along * force.value * part(force.amplitude));
-        all.extend(along.map(|along| Force {
+        all.extend(force.direction.axis().map(|axis| Force {
             of: [0, force.node, 0],
             nodes: vec![force.node],
             at: shape.at(force.node),
-            along,
+            along: Vector::ith(axis, force.value * part(force.amplitude)),
         }));
     }
     for pressure in &step.pressures {
@@ -183,17 +177,15 @@ fn forces(shape: &DeckShape, step: usize) -> Vec<Force> {
         }
     }
     for weight in &step.weights {
-        let element = &deck.elements[weight.element];
-        let faces = (0..element.kind.cell.sides().len())
-            .filter_map(|side| shape.face(weight.element, side));
-        let faces: Vec<_> = faces.collect();
+        let faces: Vec<_> = shape.element_faces(weight.element).collect();
         let Some(first) = faces.first() else {
             continue;
         };
-        let parts = faces
+        let volume = faces
             .iter()
-            .map(|face| face.area * (face.centre - first.centre).dot(&face.normal));
-        let volume = parts.sum::<f64>() / if deck.is_solid() { 3.0 } else { 2.0 };
+            .map(|face| face.area * (face.centre - first.centre).dot(&face.normal))
+            .sum::<f64>()
+            / if deck.is_solid() { 3.0 } else { 2.0 };
         let per_volume = match weight.load {
             Volume::Force(force) => Vector::from(force),
             Volume::Gravity(acceleration) => {
@@ -204,7 +196,7 @@ fn forces(shape: &DeckShape, step: usize) -> Vec<Force> {
         };
         all.push(Force {
             of: [2, weight.element, 0],
-            nodes: element.nodes.clone(),
+            nodes: deck.elements[weight.element].nodes.clone(),
             at: faces.iter().map(|face| face.centre).sum::<Vector>() / faces.len() as f64,
             along: per_volume * volume * part(weight.amplitude),
         });
@@ -232,9 +224,11 @@ pub fn words(free: &[Motion]) -> String {
 /// Projection onto the eigenvectors with eigenvalues above a limit.
 fn space(of: Matrix3<f64>, least: f64) -> Matrix3<f64> {
     let eigen = of.symmetric_eigen();
-    let values = eigen.eigenvalues.iter().enumerate();
-    let within = values.filter(|(_, value)| **value > least);
-    within
+    eigen
+        .eigenvalues
+        .iter()
+        .enumerate()
+        .filter(|(_, value)| **value > least)
         .map(|(k, _)| eigen.eigenvectors.column(k) * eigen.eigenvectors.column(k).transpose())
         .sum()
 }
@@ -249,11 +243,15 @@ fn names(mut space: Matrix3<f64>) -> Vec<String> {
         }
     }
     let eigen = space.symmetric_eigen();
-    let values = eigen.eigenvalues.iter().enumerate();
-    let rest = values.filter(|(_, value)| **value > 0.5).map(|(k, _)| {
-        let along: Vector = eigen.eigenvectors.column(k).into_owned();
-        vector(along * along[along.iamax()].signum())
-    });
+    let rest = eigen
+        .eigenvalues
+        .iter()
+        .enumerate()
+        .filter(|(_, value)| **value > 0.5)
+        .map(|(k, _)| {
+            let along: Vector = eigen.eigenvectors.column(k).into_owned();
+            vector(along * along[along.iamax()].signum())
+        });
     names.extend(rest);
     names
 }
@@ -282,38 +280,21 @@ fn add_forces(
     let mut here: BTreeMap<[usize; 3], Force> = BTreeMap::new();
     for force in forces(shape, number) {
         if shape.group(force.nodes[0]) == Some(group) {
-            match here.entry(force.of) {
-                Entry::Occupied(mut known) => known.get_mut().along += force.along,
-                Entry::Vacant(entry) => {
-                    entry.insert(force);
-                }
-            }
+            let along = here
+                .get(&force.of)
+                .map_or_else(Vector::zeros, |of| of.along);
+            let along = along + force.along;
+            here.insert(force.of, Force { along, ..force });
         }
     }
-    for (of, force) in here {
+    for (of, mut force) in here {
         // A step replaces the components that it gives.
-        match total.entry(of) {
-            Entry::Occupied(mut known) => (0..3)
-                .filter(|k| force.along[*k] != 0.0)
-                .for_each(|k| known.get_mut().along[k] = force.along[k]),
-            Entry::Vacant(entry) => {
-                entry.insert(force);
-            }
+        if let Some(known) = total.get(&of) {
+            let known = known.along;
+            force.along = force
+                .along
+                .zip_map(&known, |new, old| if new != 0.0 { new } else { old });
         }
+        total.insert(of, force);
     }
-}
-
-/// The pairs that touch a group, with their numbers.
-pub fn pairs_of<'s>(
-    shape: &'s DeckShape,
-    group: usize,
-) -> impl Iterator<Item = (usize, &'s PairShape)> {
-    let pairs = shape.pairs.iter().enumerate();
-    pairs.filter(move |(_, pair)| pair.groups.contains(&group))
-}
-
-/// Whether a pair holds in tension and shear, too.
-pub fn is_tied(shape: &DeckShape, pair: usize) -> bool {
-    let law = &shape.deck.interactions[shape.deck.pairs[pair].interaction];
-    matches!(law.normal, Normal::Tied { .. })
 }

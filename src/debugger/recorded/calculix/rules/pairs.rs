@@ -1,12 +1,12 @@
 //! Rules on pairs and ties as the deck defines them: faces, gaps, laws, and slave nodes.
 
 use super::numbers::{plain, rounded, rounded_up};
-use super::shape::{DeckShape, PairShape, SortedPoints, SurfaceFace, Vector};
+use super::shape::{DeckShape, PairShape, SlaveGap, SurfaceFace, Vector};
+use super::sorted_points::SortedPoints;
 use super::supports::is_free;
 use std::collections::{BTreeMap, BTreeSet};
 use stickslip_core::RunFinding;
-use stickslip_exchange::inp::Deck;
-use stickslip_exchange::inp::deck::{Direction, Faces, Pair, Value};
+use stickslip_exchange::inp::deck::{Faces, Value};
 use stickslip_scene::number::sig4;
 use stickslip_scene::shown::first_of;
 
@@ -37,12 +37,14 @@ pub fn reversed_faces(shape: &DeckShape) -> Vec<RunFinding> {
         let before = found.len();
         let both = [(&pair.slaves, &pair.masters), (&pair.masters, &pair.slaves)];
         let both = both.map(|(own, other)| {
-            let other: Vec<Vector> = match other.is_empty() {
-                false => other.iter().map(|face| body_centre(shape, face)).collect(),
-                true => pair.nodes.iter().map(|node| shape.at(node.node)).collect(),
-            };
-            let sorted = SortedPoints::new(&other);
-            (own, (other, sorted))
+            let mut points: Vec<Vector> = other
+                .iter()
+                .filter_map(|face| shape.element_centre(face.element))
+                .collect();
+            if points.is_empty() {
+                points.extend(pair.nodes.iter().map(|node| shape.at(node.node)));
+            }
+            (own, SortedPoints::new(points))
         });
         for (which, (own, other)) in both.iter().enumerate() {
             let wrong = |face: &&SurfaceFace| shape.is_inner(face) || looks_away(face, other);
@@ -59,31 +61,15 @@ pub fn reversed_faces(shape: &DeckShape) -> Vec<RunFinding> {
     found
 }
 
-fn body_centre(shape: &DeckShape, face: &SurfaceFace) -> Vector {
-    let nodes = &shape.deck.elements[face.element].nodes;
-    nodes.iter().map(|&node| shape.at(node)).sum::<Vector>() / nodes.len() as f64
-}
-
 /// Cosine between a face's normal and the direction to the nearest of some points.
-fn facing(face: &SurfaceFace, (points, sorted): &(Vec<Vector>, SortedPoints)) -> Option<f64> {
-    let mut best: Option<(f64, Vector)> = None;
-    for (along, k) in sorted.from(face.centre) {
-        if best.is_some_and(|(known, _)| along >= known) {
-            break;
-        }
-        let to = points[k] - face.centre;
-        if best.is_none_or(|(known, _)| to.norm() < known) {
-            best = Some((to.norm(), to));
-        }
-    }
-    let to = best?.1.try_normalize(0.0)?;
-    Some(to.dot(&face.normal))
+fn facing(face: &SurfaceFace, points: &SortedPoints) -> Option<f64> {
+    Some(points.towards(face.centre)?.dot(&face.normal))
 }
 
 /// Whether no face of a slave looks at the master face that is nearest to it.
 fn looks_aside(shape: &DeckShape, pair: &PairShape) -> bool {
     let nearest = |face: &SurfaceFace| {
-        let (nearest, ..) = shape.nearest(face.centre, (&pair.masters, &pair.centres))?;
+        let (nearest, ..) = shape.nearest(face.centre, pair)?;
         Some(face.normal.dot(&pair.masters[nearest].normal))
     };
     let aside = |face| nearest(face).is_none_or(|cosine| cosine > ASIDE);
@@ -91,7 +77,7 @@ fn looks_aside(shape: &DeckShape, pair: &PairShape) -> bool {
 }
 
 /// Whether a face looks away from the nearest of some points.
-fn looks_away(face: &SurfaceFace, others: &(Vec<Vector>, SortedPoints)) -> bool {
+fn looks_away(face: &SurfaceFace, others: &SortedPoints) -> bool {
     facing(face, others).is_some_and(|cosine| cosine < -AWAY)
 }
 
@@ -101,7 +87,7 @@ fn reversed(
     pair: &PairShape,
     which: usize,
     bad: &[&SurfaceFace],
-    others: &(Vec<Vector>, SortedPoints),
+    others: &SortedPoints,
 ) -> Option<RunFinding> {
     let deck = shape.deck;
     let surface = &deck.surfaces[pair.surfaces[which]];
@@ -111,17 +97,16 @@ fn reversed(
     let label = |side: usize| format!("S{}", side + 1);
     // The outer side of the same element that looks at the other surface.
     let better = |face: &SurfaceFace| {
-        let sides = 0..deck.elements[face.element].kind.cell.sides().len();
-        let faces = sides.filter_map(|side| shape.face(face.element, side));
-        let faces = faces.filter(|face| !shape.is_inner(face) && !looks_away(face, others));
+        let faces = shape
+            .outer_faces(face.element)
+            .filter(|face| !looks_away(face, others));
         let to = |face: &SurfaceFace| facing(face, others).unwrap_or(-1.0);
         faces.max_by(|a, b| to(a).total_cmp(&to(b)))
     };
-    let mut right: BTreeMap<Option<usize>, Vec<u64>> = BTreeMap::new();
+    let mut right: BTreeMap<Option<usize>, Vec<usize>> = BTreeMap::new();
     for face in bad {
         let side = better(face).map(|face| face.side);
-        let element = deck.elements[face.element].label;
-        right.entry(side).or_default().push(element);
+        right.entry(side).or_default().push(face.element);
     }
     let most = right.into_iter().max_by_key(|(_, elements)| elements.len());
     let same_element = most.and_then(|(side, elements)| Some((side?, elements)));
@@ -132,52 +117,43 @@ fn reversed(
     };
     let line = surface.place.line;
     let card = format!("*SURFACE, NAME={} (line {line})", surface.name);
-    let (cure, lines) = match same_element {
-        Some((side, elements)) => {
-            let lines: Vec<String> = elements
+    let (cure, lines): (_, Vec<String>) = match same_element {
+        Some((side, elements)) => (
+            format!("{} instead of {} in {card}", label(side), label(first.side)),
+            elements
                 .iter()
-                .map(|element| format!("{element}, {}", label(side)))
-                .collect();
-            (
-                format!("{} instead of {} in {card}", label(side), label(first.side)),
-                lines,
-            )
-        }
+                .map(|k| shape.surface_line(*k, side))
+                .collect(),
+        ),
         None => {
-            let body = shape.body_of[first.corners[0]];
-            let name = body.map_or("the body", |body| shape.bodies[body].as_str());
-            let looks: Vec<String> = faces_towards(shape, body, others)
-                .iter()
-                .map(|face| {
-                    let element = deck.elements[face.element].label;
-                    format!("{element}, {}", label(face.side))
-                })
-                .collect();
-            let cure = match looks.is_empty() {
-                true => format!(
+            let body = shape.body_of[first.corners[0]]?;
+            let name = &shape.bodies[body];
+            let faces = faces_towards(shape, body, others);
+            let cure = match faces.len() {
+                0 => format!(
                     "none in *SURFACE: no outer face of {name} looks at {other}; move the nodes of {name}"
                 ),
-                false => format!("the faces of {name} that look at {other} in {card}"),
+                _ => format!("the faces of {name} that look at {other} in {card}"),
             };
-            (cure, looks)
+            (
+                cure,
+                faces
+                    .iter()
+                    .map(|face| shape.surface_line(face.element, face.side))
+                    .collect(),
+            )
         }
     };
-    let which = match bad.len() {
-        0 => format!(
-            "none of {} faces of {} looks at {other}",
-            own.len(),
-            surface.name
-        ),
-        away => format!(
-            "{away} of {} faces of {} look away from {other}",
-            own.len(),
-            surface.name
-        ),
+    let (which, looks) = match bad.len() {
+        0 => ("none".to_owned(), "looks at"),
+        away => (away.to_string(), "look away from"),
     };
     Some(RunFinding {
         rule: "reversed faces",
         cause: format!(
-            "{which}, such as {} of element {}{between}",
+            "{which} of {} faces of {} {looks} {other}, such as {} of element {}{between}",
+            own.len(),
+            surface.name,
             label(first.side),
             deck.elements[first.element].label
         ),
@@ -187,47 +163,39 @@ fn reversed(
 }
 
 /// The outer faces of a body that look at the nearest of some points.
-fn faces_towards(
-    shape: &DeckShape,
-    body: Option<usize>,
-    others: &(Vec<Vector>, SortedPoints),
-) -> Vec<SurfaceFace> {
-    let elements = &shape.deck.elements;
-    let of_body = (0..elements.len()).filter(|k| shape.body_of[elements[*k].nodes[0]] == body);
-    let sides = of_body.flat_map(|k| {
-        let sides = 0..elements[k].kind.cell.sides().len();
-        sides.filter_map(move |side| shape.face(k, side))
-    });
-    let outer: Vec<SurfaceFace> = sides.filter(|face| !shape.is_inner(face)).collect();
-    let towards =
-        |face: &SurfaceFace, least: f64| facing(face, others).is_some_and(|cosine| cosine > least);
-    let ahead = outer.iter().filter(|face| towards(face, AWAY));
-    let normal: Vector = ahead.map(|face| face.normal).sum();
-    let looks = outer
+fn faces_towards(shape: &DeckShape, body: usize, others: &SortedPoints) -> Vec<SurfaceFace> {
+    let mut towards: Vec<(f64, SurfaceFace)> = shape
+        .elements(body)
+        .flat_map(|k| shape.outer_faces(k))
+        .filter_map(|face| Some((facing(&face, others)?, face)))
+        .collect();
+    let normal: Vector = towards
         .iter()
-        .filter(|face| face.normal.dot(&normal) > AWAY * normal.norm() && towards(face, 0.0));
-    looks.cloned().collect()
+        .filter(|(cosine, _)| *cosine > AWAY)
+        .map(|(_, face)| face.normal)
+        .sum();
+    towards
+        .retain(|(cosine, face)| face.normal.dot(&normal) > AWAY * normal.norm() && *cosine > 0.0);
+    towards.into_iter().map(|(_, face)| face).collect()
 }
 
 /// Ties of which nodes are beyond the position tolerance, so that they are not tied.
 pub fn tie_too_far(shape: &DeckShape) -> Vec<RunFinding> {
-    let too_far = shape.ties.iter().zip(&shape.deck.ties).filter_map(|(tie, card)| {
+    let too_far = shape.ties.iter().filter_map(|tie| {
         let far: Vec<_> = tie.nodes.iter().filter(|node| !tie.is_closed(node)).collect();
-        let most = far.iter().map(|node| node.gap.abs().hypot(node.beyond));
-        let most = most.fold(0.0, f64::max);
-        let needed = rounded_up(most);
+        let most = far.iter().map(|node| node.gap.abs().hypot(node.beyond)).fold(0.0, f64::max);
         (!far.is_empty()).then(|| RunFinding {
             rule: "tie out of reach",
             cause: format!(
                 "the tie {} leaves {} of {} nodes untied: they are up to {} from the master, beyond its position tolerance of {}",
-                shape.pair_name(tie),
+                tie.name,
                 far.len(),
                 tie.nodes.len(),
                 sig4(most),
                 sig4(tie.closes.unwrap_or(0.0))
             ),
-            cure: format!("a larger tolerance (line {})", card.place.line),
-            lines: format!("*TIE, POSITION TOLERANCE={}", plain(needed)),
+            cure: format!("a larger tolerance (line {})", shape.deck.ties[tie.number].place.line),
+            lines: format!("*TIE, POSITION TOLERANCE={}", plain(rounded_up(most))),
         })
     });
     too_far.collect()
@@ -235,73 +203,61 @@ pub fn tie_too_far(shape: &DeckShape) -> Vec<RunFinding> {
 
 /// Slave nodes that start inside the master.
 pub fn overlap(shape: &DeckShape) -> Vec<RunFinding> {
-    let mut found = Vec::new();
-    for (k, pair) in shape.pairs.iter().enumerate() {
+    let overlap = shape.pairs.iter().filter_map(|pair| {
         let size = pair.sizes[0];
-        let in_front = pair
-            .nodes
-            .iter()
-            .filter(|node| node.beyond <= OVERLAP * size);
-        let inside: Vec<_> = in_front.filter(|node| node.gap < -OVERLAP * size).collect();
-        let Some(deepest) = inside.iter().min_by(|a, b| a.gap.total_cmp(&b.gap)) else {
-            continue;
-        };
+        let limit = OVERLAP * size;
+        let inside = pair.nodes.iter().filter(|n| n.beyond <= limit && n.gap < -limit);
+        let deepest = inside.clone().min_by(|a, b| a.gap.total_cmp(&b.gap))?;
+        let depth = -deepest.gap;
         // A press fit of bodies that supports hold is meant so, and a very deep overlap is a surface on the wrong side.
         let is_expelled = pair.groups.iter().any(|group| is_free(shape, *group));
-        if (-deepest.gap < DEEP * size && !is_expelled)
-            || pair.closes.is_some()
-            || -deepest.gap > 0.5 * pair.sizes[1]
-        {
-            continue;
+        let is_meant = depth < DEEP * size && !is_expelled;
+        if is_meant || pair.closes.is_some() || depth > 0.5 * pair.sizes[1] {
+            return None;
         }
-        let deck = shape.deck;
-        let pressure = match (shape.stiffness(k), shape.young(pair)) {
-            (Some(stiffness), Some((young, _))) => -stiffness * deepest.gap / young,
-            _ => f64::INFINITY,
-        };
-        if pressure < LIGHT {
-            continue;
+        let pressure = shape.stiffness(pair).zip(shape.young(pair)).map(|(stiffness, (young, _))| stiffness * depth / young);
+        if pressure.is_some_and(|pressure| pressure < LIGHT) {
+            return None;
         }
-        let pressure = match pressure.is_finite() {
-            true => format!(", a pressure of {} Young's moduli at once", sig4(pressure)),
-            false => String::new(),
-        };
-        let card = &deck.pairs[k];
-        found.push(RunFinding {
+        let pressure = pressure.map_or(String::new(), |pressure| {
+            format!(", a pressure of {} Young's moduli at once", sig4(pressure))
+        });
+        Some(RunFinding {
             rule: "overlap at the start",
             cause: format!(
                 "{} of {} slave nodes of {} start inside the master, at most {} (node {}), which is {} % of a \
                  slave face{pressure}",
-                inside.len(),
+                inside.count(),
                 pair.nodes.len(),
-                shape.pair_name(pair),
-                sig4(-deepest.gap),
-                deck.nodes[deepest.node].label,
-                sig4(-100.0 * deepest.gap / size)
+                pair.name,
+                sig4(depth),
+                shape.deck.nodes[deepest.node].label,
+                sig4(100.0 * depth / size)
             ),
             cure: format!(
                 "move the nodes onto the master at the start (*CONTACT PAIR before line {})",
-                card.place.line
+                shape.deck.pairs[pair.number].place.line
             ),
-            lines: pair_card(deck, card, ", ADJUST=0."),
-        });
-    }
-    found
+            lines: pair_card(shape, pair, ", ADJUST=0."),
+        })
+    });
+    overlap.collect()
 }
 
 /// The card of a contact pair, without SMALL SLIDING and ADJUST.
-pub fn pair_card(deck: &Deck, card: &Pair, more: &str) -> String {
-    let kind = if card.faces { "SURFACE" } else { "NODE" };
-    let law = &deck.interactions[card.interaction].name;
+pub fn pair_card(shape: &DeckShape, pair: &PairShape, more: &str) -> String {
+    let faces = shape.deck.pairs[pair.number].faces;
+    let kind = if faces { "SURFACE" } else { "NODE" };
+    let law = &shape.law(pair).name;
     format!("*CONTACT PAIR, INTERACTION={law}, TYPE={kind} TO SURFACE{more}")
 }
 
 /// Contact far stiffer than the bodies, along the normal or along the surface.
 pub fn stiff_contact(shape: &DeckShape) -> Vec<RunFinding> {
     let mut found = Vec::new();
-    for (k, pair) in shape.pairs.iter().enumerate() {
-        let law = &shape.deck.interactions[shape.deck.pairs[k].interaction];
-        let (Some(stiffness), Some((young, material))) = (shape.stiffness(k), shape.young(pair))
+    for pair in &shape.pairs {
+        let law = shape.law(pair);
+        let (Some(stiffness), Some((young, material))) = (shape.stiffness(pair), shape.young(pair))
         else {
             continue;
         };
@@ -325,46 +281,45 @@ pub fn stiff_contact(shape: &DeckShape) -> Vec<RunFinding> {
             plain(rounded(normal / 100.0))
         );
         let (line, places) = (law.normal_place.line, law.friction_place.line);
-        let why = format!(
-            "the contact stiffness of {} is K = {}",
-            law.name,
-            plain(stiffness)
-        );
-        found.extend(match (is_stiff, slope) {
-            (false, None) => None,
-            (true, None) => Some(RunFinding {
-                rule: "stiff contact",
-                cause: format!("{why}: K {}; CalculiX recommends 5 to 50", compared(stiffness)),
-                cure: format!("K of {ADVISED} moduli per element size (line {line})"),
-                lines: plain(advised),
-            }),
-            (true, Some(slope)) => Some(RunFinding {
-                rule: "stiff contact",
-                cause: format!(
-                    "{why}: K {}; CalculiX recommends 5 to 50; the stick slope is {}",
-                    compared(stiffness),
-                    plain(slope)
-                ),
-                cure: format!(
+        let mut finding = RunFinding {
+            rule: "stiff contact",
+            cause: format!(
+                "the contact stiffness of {} is K = {}: K {}; CalculiX recommends 5 to 50",
+                law.name,
+                plain(stiffness),
+                compared(stiffness)
+            ),
+            cure: format!("K of {ADVISED} moduli per element size (line {line})"),
+            lines: plain(advised),
+        };
+        match slope {
+            None if !is_stiff => continue,
+            None => {}
+            Some(slope) if is_stiff => {
+                finding.cause += &format!("; the stick slope is {}", plain(slope));
+                finding.cure = format!(
                     "K of {ADVISED} moduli per element size, and a hundredth of it as stick slope (lines {line} and {places})"
-                ),
-                lines: format!("{}\n*FRICTION\n{friction}", plain(advised)),
-            }),
-            (false, Some(slope)) => Some(RunFinding {
-                rule: "stick slope",
-                cause: format!(
-                    "the stick slope of {} is {}, {} times its contact stiffness {}: the slope {}; it should be about a \
-                     hundredth of K",
-                    law.name,
-                    plain(slope),
-                    sig4(slope / stiffness),
-                    plain(stiffness),
-                    compared(slope)
-                ),
-                cure: format!("a smaller slope (line {places})"),
-                lines: friction,
-            }),
-        });
+                );
+                finding.lines += &format!("\n*FRICTION\n{friction}");
+            }
+            Some(slope) => {
+                finding = RunFinding {
+                    rule: "stick slope",
+                    cause: format!(
+                        "the stick slope of {} is {}, {} times its contact stiffness {}: the slope {}; it should be about a \
+                         hundredth of K",
+                        law.name,
+                        plain(slope),
+                        sig4(slope / stiffness),
+                        plain(stiffness),
+                        compared(slope)
+                    ),
+                    cure: format!("a smaller slope (line {places})"),
+                    lines: friction,
+                }
+            }
+        }
+        found.push(finding);
     }
     found.dedup();
     found
@@ -373,74 +328,58 @@ pub fn stiff_contact(shape: &DeckShape) -> Vec<RunFinding> {
 /// Slave nodes that are supported against their contact, tied, or slaves of two pairs.
 pub fn constrained_slaves(shape: &DeckShape) -> Vec<RunFinding> {
     let deck = shape.deck;
-    let motions = deck.steps.iter().flat_map(|step| &step.motions);
-    let supports = deck.supports.iter().chain(motions);
-    let supports: Vec<&Value> = supports.filter(|_| !deck.is_incomplete).collect();
+    let supports = shape.all_supports().filter(|_| !deck.is_incomplete);
     let mut found = Vec::new();
     let names = |nodes: &BTreeSet<usize>| {
-        first_of(
-            nodes.iter().map(|&node| deck.nodes[node].label),
-            NAMED,
-            ", ",
-        )
+        let labels = nodes.iter().map(|&node| deck.nodes[node].label);
+        first_of(labels, NAMED, ", ")
     };
     for (k, pair) in shape.pairs.iter().enumerate() {
-        let own: BTreeMap<usize, Vector> = pair
-            .nodes
-            .iter()
-            .map(|node| (node.node, pair.masters[node.face].normal))
-            .collect();
-        let near = pair.nodes.iter().filter(|n| n.beyond <= pair.sizes[1]);
-        let near: BTreeSet<usize> = near.map(|node| node.node).collect();
-        let against = supports.iter().filter(|value| {
-            let axis = match value.direction {
-                Direction::X => Vector::x(),
-                Direction::Y => Vector::y(),
-                Direction::Z => Vector::z(),
-                Direction::Rotation => return false,
-            };
-            let normal = own.get(&value.node);
-            let is_against = normal.is_some_and(|normal| normal.dot(&axis).abs() > 0.9);
-            is_against && near.contains(&value.node)
-        });
-        let against: Vec<&&Value> = against.collect();
-        let held: BTreeSet<usize> = against.iter().map(|value| value.node).collect();
-        if let Some(first) = against.first() {
-            let rest = supports.iter().filter(|value| {
-                value.place == first.place && !against.iter().any(|other| other == value)
-            });
-            let rest: Vec<String> = rest.map(|value| support_line(shape, value)).collect();
+        let own: BTreeMap<usize, &SlaveGap> = pair.nodes.iter().map(|n| (n.node, n)).collect();
+        let is_against = |value: &&Value| {
+            let node = own
+                .get(&value.node)
+                .filter(|node| node.beyond <= pair.sizes[1]);
+            let along = |(node, axis): (&&SlaveGap, usize)| pair.masters[node.face].normal[axis];
+            node.zip(value.direction.axis())
+                .is_some_and(|of| along(of).abs() > 0.9)
+        };
+        let mut against = supports.clone().filter(is_against);
+        let held: BTreeSet<usize> = against.clone().map(|value| value.node).collect();
+        if let Some(first) = against.next() {
+            let rest: Vec<String> = supports
+                .clone()
+                .filter(|value| value.place == first.place && !is_against(value))
+                .map(|value| support_line(shape, value))
+                .collect();
             found.push(RunFinding {
                 rule: "constrained slave nodes",
                 cause: format!(
                     "{} of {} slave nodes of {} are supported along the contact normal: {}",
                     held.len(),
                     own.len(),
-                    shape.pair_name(pair),
+                    pair.name,
                     names(&held)
                 ),
                 cure: format!(
                     "leave these nodes out of *BOUNDARY (line {})",
                     first.place.line
                 ),
-                lines: match rest.is_empty() {
-                    true => "** supports no other node".into(),
-                    false => rest.join("\n"),
+                lines: if rest.is_empty() {
+                    "** supports no other node".into()
+                } else {
+                    rest.join("\n")
                 },
             });
         }
-        let tied: BTreeSet<usize> = shape
-            .ties
-            .iter()
-            .flat_map(|tie| tie.nodes.iter().filter(|node| tie.is_closed(node)))
-            .map(|node| node.node)
-            .filter(|node| own.contains_key(node))
-            .collect();
-        let others = shape.pairs.iter().take(k);
-        let twice: BTreeSet<usize> = others
-            .flat_map(|pair| pair.nodes.iter().map(|node| node.node))
-            .filter(|node| own.contains_key(node))
-            .collect();
+        let shared = |nodes: &mut dyn Iterator<Item = &SlaveGap>| -> BTreeSet<usize> {
+            nodes
+                .map(|node| node.node)
+                .filter(|node| own.contains_key(node))
+                .collect()
+        };
+        let tied = shared(&mut shape.ties.iter().flat_map(PairShape::closed));
+        let twice = shared(&mut shape.pairs[..k].iter().flat_map(|pair| &pair.nodes));
         let surface = &deck.surfaces[pair.surfaces[0]];
         for (nodes, why) in [
             (tied, "are tied, too"),
@@ -455,15 +394,16 @@ pub fn constrained_slaves(shape: &DeckShape) -> Vec<RunFinding> {
                 cause: format!(
                     "{count} of {} slave nodes of {} {why}: {}",
                     own.len(),
-                    shape.pair_name(pair),
+                    pair.name,
                     names(&nodes)
                 ),
-                cure: match count == own.len() {
-                    true => format!("leave the pair out (line {})", deck.pairs[k].place.line),
-                    false => format!(
+                cure: if count == own.len() {
+                    format!("leave the pair out (line {})", deck.pairs[k].place.line)
+                } else {
+                    format!(
                         "leave these nodes out of the slave surface {} (line {})",
                         surface.name, surface.place.line
-                    ),
+                    )
                 },
                 lines: remaining(&own, &nodes, shape, surface.name.as_str()),
             });
@@ -481,30 +421,34 @@ fn support_line(shape: &DeckShape, value: &Value) -> String {
 
 /// A surface of the slave nodes without some of them; a comment if that leaves none.
 fn remaining(
-    own: &BTreeMap<usize, Vector>,
+    own: &BTreeMap<usize, &SlaveGap>,
     without: &BTreeSet<usize>,
     shape: &DeckShape,
     name: &str,
 ) -> String {
-    let rest = own.keys().filter(|node| !without.contains(node));
-    let rest: Vec<String> = rest
+    let rest: Vec<String> = own
+        .keys()
+        .filter(|node| !without.contains(node))
         .map(|&node| format!("{},", shape.deck.nodes[node].label))
         .collect();
-    match rest.is_empty() {
-        true => format!("** {name} is in no pair"),
-        false => format!("*SURFACE, NAME={name}, TYPE=NODE\n{}", rest.join("\n")),
+    if rest.is_empty() {
+        format!("** {name} is in no pair")
+    } else {
+        format!("*SURFACE, NAME={name}, TYPE=NODE\n{}", rest.join("\n"))
     }
 }
 
 /// Slave surfaces coarser than their master.
 pub fn coarse_slave(shape: &DeckShape) -> Vec<RunFinding> {
-    let coarse = shape.pairs.iter().filter(|pair| !pair.slaves.is_empty());
-    let coarse = coarse.filter(|pair| pair.sizes[0] > COARSE * pair.sizes[1]);
+    let coarse = shape
+        .pairs
+        .iter()
+        .filter(|pair| !pair.slaves.is_empty())
+        .filter(|pair| pair.sizes[0] > COARSE * pair.sizes[1]);
     coarse
         .map(|pair| {
             let deck = shape.deck;
             let [slave, master] = pair.surfaces.map(|k| deck.surfaces[k].name.as_str());
-            let card = deck.pairs.iter().find(|card| [card.slave, card.master] == pair.surfaces);
             let swaps = matches!(deck.surfaces[pair.surfaces[1]].of, Faces::Elements(_));
             RunFinding {
                 rule: "coarse slave",
@@ -515,14 +459,8 @@ pub fn coarse_slave(shape: &DeckShape) -> Vec<RunFinding> {
                     sig4(pair.sizes[0]),
                     sig4(pair.sizes[1])
                 ),
-                cure: format!(
-                    "swap the surfaces (line {})",
-                    card.map_or(0, |card| card.place.line)
-                ),
-                lines: match swaps {
-                    true => format!("{master}, {slave}"),
-                    false => String::new(),
-                },
+                cure: format!("swap the surfaces (line {})", deck.pairs[pair.number].place.line),
+                lines: if swaps { format!("{master}, {slave}") } else { String::new() },
             }
         })
         .collect()

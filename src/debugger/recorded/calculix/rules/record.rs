@@ -3,11 +3,10 @@
 use super::super::run::{CalculixRun, Switching};
 use super::numbers::{plain, rounded, rounded_up};
 use super::pairs::pair_card;
-use super::shape::DeckShape;
+use super::shape::{DeckShape, PairShape, nearest};
 use super::supports::open_at_start;
 use std::collections::BTreeSet;
 use stickslip_core::RunFinding;
-use stickslip_exchange::calculix::cel::Slave;
 use stickslip_exchange::calculix::cvg::Norms;
 use stickslip_exchange::calculix::files::{End, Iteration};
 use stickslip_scene::number::{shortest, sig4};
@@ -56,8 +55,7 @@ pub fn never_closed(run: &CalculixRun, shape: Option<&DeckShape>) -> Vec<RunFind
     let files = &run.files;
     let is_open = |norms: &Norms| norms.elements == 0;
     let norms = |at: &Iteration| at.norms.as_ref().is_some_and(is_open);
-    let all_open = files.iterations.iter().all(norms);
-    if files.iterations.is_empty() || !all_open {
+    if files.iterations.is_empty() || !files.iterations.iter().all(norms) {
         return Vec::new();
     }
     let known = shape.map(open_at_start).unwrap_or_default();
@@ -66,16 +64,12 @@ pub fn never_closed(run: &CalculixRun, shape: Option<&DeckShape>) -> Vec<RunFind
         let complete = shape.is_some_and(|shape| is_complete(run, shape));
         return if complete { known } else { Vec::new() };
     }
-    let pairs = shape
-        .iter()
-        .flat_map(|shape| shape.pairs.iter().enumerate());
-    let nearest = pairs.filter_map(|(k, pair)| Some((k, pair, pair.nearest()?)));
-    let nearest = nearest.min_by(|a, b| a.2.gap.total_cmp(&b.2.gap));
+    let nearest = shape.and_then(|shape| nearest(shape.pairs.iter()));
     let cause = format!(
         "no contact element was active in any of {} iterations",
         files.iterations.len()
     );
-    let Some((shape, (k, pair, node))) = shape.zip(nearest) else {
+    let Some((shape, (pair, node))) = shape.zip(nearest) else {
         return vec![RunFinding {
             rule: "contact never closed",
             cause,
@@ -83,7 +77,6 @@ pub fn never_closed(run: &CalculixRun, shape: Option<&DeckShape>) -> Vec<RunFind
             lines: String::new(),
         }];
     };
-    let card = &shape.deck.pairs[k];
     if node.gap <= 0.0 {
         return Vec::new();
     }
@@ -93,16 +86,16 @@ pub fn never_closed(run: &CalculixRun, shape: Option<&DeckShape>) -> Vec<RunFind
             "{cause}; the smallest gap at the start is {}, node {} of {}",
             sig4(node.gap),
             shape.deck.nodes[node.node].label,
-            shape.pair_name(pair)
+            pair.name
         ),
         cure: format!(
             "if they should touch, move the slave nodes onto the master (*CONTACT PAIR before line {}), or displace a body \
              by more than the gap",
-            card.place.line
+            shape.deck.pairs[pair.number].place.line
         ),
         lines: pair_card(
-            shape.deck,
-            card,
+            shape,
+            pair,
             &format!(", ADJUST={}", plain(rounded_up(node.gap))),
         ),
     }]
@@ -137,49 +130,37 @@ pub fn chatter(run: &CalculixRun, shape: Option<&DeckShape>) -> Vec<RunFinding> 
         Some(&(attempt, count)) if attempt + 1 == attempts => (attempt, count),
         _ => (attempts, 0),
     };
-    let chattering = |(_, (_, count)): &(&Switching, (usize, usize))| *count >= CHATTER;
-    let all = || run.switching.iter();
-    let last: Vec<_> = all()
-        .map(|found| (found, in_last(found)))
-        .filter(chattering)
-        .collect();
-    let (counted, when) = match last.is_empty() {
-        true => (
-            all()
-                .map(|found| (found, found.most()))
-                .filter(chattering)
-                .collect(),
-            format!("one of {attempts} attempts"),
-        ),
-        false => (last, "the last attempt".to_owned()),
+    let often = |counted: &dyn Fn(&Switching) -> (usize, usize)| -> Vec<_> {
+        run.switching
+            .iter()
+            .map(|found| (found.slave, counted(found)))
+            .filter(|(_, (_, count))| *count >= CHATTER)
+            .collect()
     };
+    let (mut counted, mut when) = (often(&in_last), "the last attempt".to_owned());
+    if counted.is_empty() {
+        (counted, when) = (
+            often(&Switching::most),
+            format!("one of {attempts} attempts"),
+        );
+    }
     let counts = counted.iter().map(|(_, counts)| *counts);
     let Some((attempt, count)) = counts.max_by_key(|(_, count)| *count) else {
         return Vec::new();
     };
-    let often: Vec<&Switching> = counted.iter().map(|(found, _)| *found).collect();
+    let slaves = || counted.iter().map(|(slave, _)| *slave);
     let name = |slave: usize| match shape.and_then(|shape| place(run, shape, slave)) {
         Some(at) => format!("{} {at}", run.slave_with_corners(slave)),
         None => run.slave_with_corners(slave),
     };
-    let named = often.iter().take(NAMED).map(|found| name(found.slave));
-    let named = named.collect::<Vec<_>>().join(", ");
-    let more = match often.len().saturating_sub(NAMED) {
-        0 => String::new(),
-        more => format!(" and {more} more"),
-    };
-    let masters = masters(
-        run,
-        attempt,
-        &often.iter().map(|found| found.slave).collect(),
-    );
-    let slaves = often.iter().map(|found| found.slave);
+    let masters = masters(run, attempt, &slaves().collect());
     let softer = shape.and_then(|shape| {
-        let mut pairs = slaves.filter_map(|slave| pair_of(run, shape, slave).map(|(_, pair)| pair));
-        let pair = pairs.next().or((!shape.pairs.is_empty()).then_some(0))?;
-        let law = &shape.deck.interactions[shape.deck.pairs[pair].interaction];
-        let line = law.normal_place.line;
-        match (shape.stiffness(pair), shape.young(&shape.pairs[pair])) {
+        let pair = slaves()
+            .filter_map(|slave| Some(pair_of(run, shape, slave)?.1))
+            .next()
+            .or(shape.pairs.first())?;
+        let line = shape.law(pair).normal_place.line;
+        match (shape.stiffness(pair), shape.young(pair)) {
             (Some(stiffness), _) => Some((
                 format!("a contact stiffness 10 times smaller (line {line})"),
                 plain(rounded(stiffness / 10.0)),
@@ -188,7 +169,7 @@ pub fn chatter(run: &CalculixRun, shape: Option<&DeckShape>) -> Vec<RunFinding> 
                 format!("a stiffness instead of hard contact (line {line})"),
                 format!(
                     "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n{}",
-                    plain(rounded(10.0 * young / shape.pairs[pair].sizes[0]))
+                    plain(rounded(10.0 * young / pair.sizes[0]))
                 ),
             )),
             (None, None) => None,
@@ -203,10 +184,10 @@ pub fn chatter(run: &CalculixRun, shape: Option<&DeckShape>) -> Vec<RunFinding> 
         rule: "chattering",
         cause: format!(
             "{} of {} contacts switch {CHATTER} times or more in {when}, up to {count} times in {}: {}; against {masters}",
-            often.len(),
+            counted.len(),
             run.files.slaves.len(),
             run.attempt_name(attempt),
-            named + &more
+            first_of(slaves().map(name), NAMED, ", ")
         ),
         cure,
         lines,
@@ -214,15 +195,19 @@ pub fn chatter(run: &CalculixRun, shape: Option<&DeckShape>) -> Vec<RunFinding> 
 }
 
 /// The node of a slave, and its pair; a face has its first corner.
-fn pair_of(run: &CalculixRun, shape: &DeckShape, slave: usize) -> Option<(usize, usize)> {
-    let label = match run.files.slaves[slave] {
-        Slave::Node(node) => node,
-        Slave::Face([first, ..]) => first,
-    };
-    let mut nodes = shape.deck.nodes.iter();
-    let node = nodes.position(|node| node.label == u64::from(label))?;
-    let of = |pair: &super::shape::PairShape| pair.nodes.iter().any(|own| own.node == node);
-    Some((node, shape.pairs.iter().position(of)?))
+fn pair_of<'s>(
+    run: &CalculixRun,
+    shape: &'s DeckShape,
+    slave: usize,
+) -> Option<(usize, &'s PairShape)> {
+    let label = run.files.slaves[slave].nodes()[0];
+    let node = shape
+        .deck
+        .nodes
+        .iter()
+        .position(|node| node.label == u64::from(label))?;
+    let has = |pair: &&PairShape| pair.nodes.iter().any(|own| own.node == node);
+    Some((node, shape.pairs.iter().find(has)?))
 }
 
 /// Where a slave is: its coordinates and its surface.
@@ -234,7 +219,7 @@ fn place(run: &CalculixRun, shape: &DeckShape, slave: usize) -> Option<String> {
         sig4(at.x),
         sig4(at.y),
         sig4(at.z),
-        shape.pair_name(&shape.pairs[pair])
+        pair.name
     ))
 }
 
@@ -242,8 +227,10 @@ fn place(run: &CalculixRun, shape: &DeckShape, slave: usize) -> Option<String> {
 fn masters(run: &CalculixRun, attempt: usize, slaves: &BTreeSet<usize>) -> String {
     let iterations = run.files.attempts[attempt].iterations.clone();
     let closed = iterations.filter_map(|k| run.files.closed(k)).flatten();
-    let touched = closed.filter(|closed| slaves.contains(&(closed.slave as usize)));
-    let faces: BTreeSet<u32> = touched.map(|closed| closed.master).collect();
+    let faces: BTreeSet<u32> = closed
+        .filter(|closed| slaves.contains(&(closed.slave as usize)))
+        .map(|closed| closed.master)
+        .collect();
     let names = faces
         .iter()
         .map(|face| super::super::run::face(&run.files.masters[*face as usize]));
@@ -272,17 +259,11 @@ pub fn capped_correction(run: &CalculixRun, shape: Option<&DeckShape>) -> Vec<Ru
             let norms: Vec<_> = norms
                 .take_while(|norms| norms.correction >= CAPPED)
                 .collect();
-            let (first, last) = (norms.first()?, norms.last()?);
-            let grows = norms.len() >= 2 && last.residual > first.residual;
-            (attempt.end == End::NotConverged && grows).then_some((
-                k,
-                norms.len(),
-                first.residual,
-                last.residual,
-            ))
+            let (from, to) = (norms.first()?.residual, norms.last()?.residual);
+            let grows = attempt.end == End::NotConverged && to > from;
+            grows.then_some((k, norms.len(), from, to))
         });
-    let capped: Vec<_> = capped.collect();
-    let Some(&(attempt, count, from, to)) = capped.iter().max_by(|a, b| a.1.cmp(&b.1)) else {
+    let Some((attempt, count, from, to)) = capped.max_by_key(|capped| capped.1) else {
         return Vec::new();
     };
     let number = run.files.attempts[attempt].step as usize;

@@ -1,7 +1,7 @@
 //! Loads on bodies that rest on a single, flat contact: above friction, away from it, beyond its edge, above the plastic limit.
 
-use super::motion::{GroupMotion, LOADED, Motion, is_tied, pairs_of};
-use super::numbers::{plain, rounded, rounded_up, vector};
+use super::motion::{GroupMotion, LOADED, Motion};
+use super::numbers::{boundary, displaced, plain, rounded, rounded_up, vector};
 use super::shape::{DeckShape, PairShape, SlaveGap, Vector};
 use stickslip_core::RunFinding;
 use stickslip_scene::number::sig4;
@@ -17,11 +17,11 @@ const DIRECTIONS: usize = 72;
 
 /// A body that a single, flat pair holds at the end of a step.
 struct Resting<'s> {
-    pair: usize,
+    pair: &'s PairShape,
     step: usize,
-    motion: &'s GroupMotion,
+    motion: GroupMotion,
     /// The motions that supports leave free.
-    free: &'s [Motion],
+    free: Vec<Motion>,
     /// Normal of the contact, into the body.
     normal: Vector,
     force: Vector,
@@ -31,36 +31,44 @@ struct Resting<'s> {
 }
 
 /// The slave nodes in front of the master, if it is flat there and the pair can open.
-fn flat<'s>(shape: &DeckShape, (k, pair): (usize, &'s PairShape)) -> Option<Vec<&'s SlaveGap>> {
+fn flat<'s>(shape: &DeckShape, pair: &'s PairShape) -> Option<Vec<&'s SlaveGap>> {
     let normal = pair.normal();
     let is_flat = |node: &&SlaveGap| pair.masters[node.face].normal.dot(&normal) > FLAT;
     let touching: Vec<&SlaveGap> = pair.in_front().collect();
-    let rests = !touching.is_empty() && touching.iter().all(is_flat) && !is_tied(shape, k);
+    let rests = !touching.is_empty() && touching.iter().all(is_flat) && !shape.is_tied(pair);
     rests.then_some(touching)
 }
 
 /// Whether displacements of later steps than the first drive a group until the end of a step.
 fn is_driven(shape: &DeckShape, group: usize, step: usize) -> bool {
-    let later = shape.deck.steps.iter().take(step + 1).skip(1);
-    let mut motions = later.flat_map(|step| &step.motions);
-    motions.any(|value| shape.group(value.node) == Some(group))
+    shape
+        .deck
+        .steps
+        .iter()
+        .take(step + 1)
+        .skip(1)
+        .flat_map(|step| &step.motions)
+        .any(|value| shape.group(value.node) == Some(group))
 }
 
 /// Whether the loads of a step alone press a group onto a single, flat contact, so that friction is known.
 pub fn is_pressed_by_loads(shape: &DeckShape, group: usize, step: usize) -> bool {
-    let pairs: Vec<_> = pairs_of(shape, group).collect();
+    let pairs: Vec<_> = shape.pairs_of(group).collect();
     let [pair] = pairs[..] else {
         return false;
     };
-    let normal = pair.1.normal();
-    let free = GroupMotion::new(shape, group, step);
-    let along = free.motion(free.centre, normal).normalize();
-    let part: f64 = free
-        .free(shape.modes(group))
-        .iter()
-        .map(|m| m.dot(&along).powi(2))
-        .sum();
-    flat(shape, pair).is_some() && part > 1.0 - LOADED && !is_driven(shape, group, step)
+    let motion = GroupMotion::new(shape, group, step);
+    let along = motion.motion(motion.centre, pair.normal());
+    flat(shape, pair).is_some()
+        && is_within(&motion.free(shape), along)
+        && !is_driven(shape, group, step)
+}
+
+/// Whether a motion lies in a space of motions.
+fn is_within(space: &[Motion], motion: Motion) -> bool {
+    let motion = motion.normalize();
+    let part: f64 = space.iter().map(|m| m.dot(&motion).powi(2)).sum();
+    part > 1.0 - 1e-6
 }
 
 impl Resting<'_> {
@@ -74,9 +82,7 @@ impl Resting<'_> {
                 Motion::from_iterator(shift.iter().chain(turn.iter()).copied())
             }
         };
-        let motion = motion.normalize();
-        let part: f64 = self.free.iter().map(|m| m.dot(&motion).powi(2)).sum();
-        part > 1.0 - 1e-6
+        is_within(&self.free, motion)
     }
 
     /// The first finding on a step of each body that rests on a single pair.
@@ -88,8 +94,8 @@ impl Resting<'_> {
             return Vec::new();
         }
         let mut found = Vec::new();
-        for (k, pair) in shape.pairs.iter().enumerate() {
-            let Some(touching) = flat(shape, (k, pair)) else {
+        for pair in &shape.pairs {
+            let Some(touching) = flat(shape, pair) else {
                 continue;
             };
             let at = touching.iter().map(|node| shape.at(node.node));
@@ -97,25 +103,26 @@ impl Resting<'_> {
             let at: Vec<Vector> = at.map(|at| at - mean).collect();
             let normal = pair.normal();
             for (group, normal) in [(pair.groups[0], normal), (pair.groups[1], -normal)] {
-                if pairs_of(shape, group).count() != 1 {
+                if shape.pairs_of(group).count() != 1 {
                     continue;
                 }
-                let steps = shape.reached().map(|(step, _)| step);
-                let mut resting = steps.take_while(|step| !is_driven(shape, group, *step));
+                let mut resting = shape
+                    .reached()
+                    .map(|(step, _)| step)
+                    .take_while(|step| !is_driven(shape, group, *step));
                 found.extend(resting.find_map(|step| {
                     let motion = GroupMotion::new(shape, group, step);
-                    let free = motion.free(shape.modes(group));
                     let rest = Resting {
-                        pair: k,
+                        pair,
                         step: step + 1,
                         force: motion.force(),
-                        motion: &motion,
-                        free: &free,
+                        free: motion.free(shape),
+                        motion,
                         normal,
                         at: &at,
                         mean,
                     };
-                    (!free.is_empty()).then(|| finding(&rest)).flatten()
+                    finding(&rest)
                 }));
             }
         }
@@ -126,8 +133,7 @@ impl Resting<'_> {
 /// A body that only contact holds, with a tangential load above what friction can bear.
 pub fn beyond_friction(shape: &DeckShape) -> Vec<RunFinding> {
     Resting::findings(shape, |rest| {
-        let pair = &shape.pairs[rest.pair];
-        let law = &shape.deck.interactions[shape.deck.pairs[rest.pair].interaction];
+        let law = shape.law(rest.pair);
         let pressed = -rest.force.dot(&rest.normal);
         let along = rest.force + pressed * rest.normal;
         let limit = law.friction * pressed.max(0.0);
@@ -143,11 +149,11 @@ pub fn beyond_friction(shape: &DeckShape) -> Vec<RunFinding> {
         let pushes = format!(
             "step {} pushes {name} along {} with {}",
             rest.step,
-            shape.pair_name(pair),
+            rest.pair.name,
             sig4(along.norm())
         );
         if pressed <= is_small {
-            let (set, axis) = (shape.set_name(&rest.motion.loaded()), along.iamax() + 1);
+            let set = shape.set_name(&rest.motion.loaded());
             return Some(RunFinding {
                 rule: "load above friction",
                 cause: format!(
@@ -155,7 +161,7 @@ pub fn beyond_friction(shape: &DeckShape) -> Vec<RunFinding> {
                 ),
                 cure: "a step before it that presses, or a displacement instead of the force"
                     .into(),
-                lines: format!("*BOUNDARY\n{set}, {axis}, {axis}, 0."),
+                lines: boundary([displaced(set, along.iamax(), "0.")]),
             });
         }
         let needed = rounded_up(SPARE * along.norm() / pressed);
@@ -183,14 +189,15 @@ pub fn beyond_friction(shape: &DeckShape) -> Vec<RunFinding> {
 pub fn off_the_contact(shape: &DeckShape) -> Vec<RunFinding> {
     Resting::findings(shape, |rest| {
         let (name, normal) = (shape.group_name(rest.motion.group), rest.normal);
-        let pair = &shape.pairs[rest.pair];
+        let pair = rest.pair;
         let pressed = -rest.force.dot(&normal);
         // Loaded nodes far from the contact.
         let height = |node: &usize| (shape.at(*node) - rest.mean).dot(&normal);
         let loaded = rest.motion.loaded();
         let most = loaded.iter().map(height).fold(0.0, f64::max);
-        let far = loaded.iter().copied();
-        let set = shape.set_name(&far.filter(|node| height(node) > 0.75 * most).collect());
+        let mut far = loaded;
+        far.retain(|node| height(node) > 0.75 * most);
+        let set = shape.set_name(&far);
         let hold = |first: usize, last: usize| format!("*BOUNDARY\n{set}, {first}, {last}, 0.");
         if pressed < -LOADED * rest.force.norm() && rest.is_free(normal, None) {
             let axes = if shape.deck.is_solid() { 3 } else { 2 };
@@ -199,7 +206,7 @@ pub fn off_the_contact(shape: &DeckShape) -> Vec<RunFinding> {
                 cause: format!(
                     "step {} pulls {name} off its only contact, {}, with the force {}: nothing else holds it",
                     rest.step,
-                    shape.pair_name(pair),
+                    pair.name,
                     sig4(-pressed)
                 ),
                 cure: format!(
@@ -212,19 +219,27 @@ pub fn off_the_contact(shape: &DeckShape) -> Vec<RunFinding> {
             return None;
         }
         // Where the resultant meets the contact, against the edge of the contact in each direction.
-        let forces = rest.motion.forces.values();
-        let moment: Vector = forces.map(|f| (f.at - rest.mean).cross(&f.along)).sum();
+        let moment: Vector = rest
+            .motion
+            .forces
+            .values()
+            .map(|f| (f.at - rest.mean).cross(&f.along))
+            .sum();
         let meets = moment.cross(&normal) / pressed;
         let across = normal.cross(&Vector::ith(normal.iamin(), 1.0)).normalize();
-        let directions = (0..DIRECTIONS).map(|k| {
-            let angle = std::f64::consts::TAU * k as f64 / DIRECTIONS as f64;
-            across * angle.cos() + normal.cross(&across) * angle.sin()
-        });
-        let beyond = directions.map(|to| {
-            let edge = rest.at.iter().map(|at| at.dot(&to));
-            let edge = edge.fold(f64::NEG_INFINITY, f64::max);
-            (meets.dot(&to) - edge, edge, to)
-        });
+        let beyond = (0..DIRECTIONS)
+            .map(|k| {
+                let angle = std::f64::consts::TAU * k as f64 / DIRECTIONS as f64;
+                across * angle.cos() + normal.cross(&across) * angle.sin()
+            })
+            .map(|to| {
+                let edge = rest
+                    .at
+                    .iter()
+                    .map(|at| at.dot(&to))
+                    .fold(f64::NEG_INFINITY, f64::max);
+                (meets.dot(&to) - edge, edge, to)
+            });
         let (beyond, edge, to) = beyond.max_by(|a, b| a.0.total_cmp(&b.0))?;
         let axis = normal.cross(&to);
         if beyond <= EDGE * pair.sizes[0] || !rest.is_free(axis, Some(rest.mean + edge * to)) {
@@ -236,7 +251,7 @@ pub fn off_the_contact(shape: &DeckShape) -> Vec<RunFinding> {
             cause: format!(
                 "the loads of step {} on {name} meet {} at {} beyond its edge, in direction {}: it tips over",
                 rest.step,
-                shape.pair_name(pair),
+                pair.name,
                 sig4(beyond),
                 vector(to)
             ),
@@ -249,21 +264,16 @@ pub fn off_the_contact(shape: &DeckShape) -> Vec<RunFinding> {
 /// A body pressed onto its contact with more than its material bears.
 pub fn beyond_plastic_limit(shape: &DeckShape) -> Vec<RunFinding> {
     Resting::findings(shape, |rest| {
-        let (name, pair) = (shape.group_name(rest.motion.group), &shape.pairs[rest.pair]);
+        let (name, pair) = (shape.group_name(rest.motion.group), rest.pair);
         let pressed = -rest.force.dot(&rest.normal);
         let area: f64 = pair.slaves.iter().map(|face| face.area).sum();
-        let mut elements = shape.deck.elements.iter().enumerate();
-        let own = elements.find(|(_, element)| {
-            let first = element.nodes.first();
-            first.and_then(|node| shape.group(*node)) == Some(rest.motion.group)
-        })?;
-        let material = &shape.deck.materials[shape.material(own.0)?];
+        let element = shape.group_elements(rest.motion.group).next()?;
+        let material = &shape.deck.materials[shape.material(element)?];
         let most = material.yields?;
         if area == 0.0 || pressed <= most * area || !rest.is_free(rest.normal, None) {
             return None;
         }
-        let loaded = rest.motion.loaded();
-        let set = shape.set_name(&loaded);
+        let set = shape.set_name(&rest.motion.loaded());
         let axis = rest.normal.iamax();
         let part = rounded(0.1 * pair.sizes[0]).copysign(-rest.normal[axis]);
         Some(RunFinding {
@@ -271,7 +281,7 @@ pub fn beyond_plastic_limit(shape: &DeckShape) -> Vec<RunFinding> {
             cause: format!(
                 "step {} presses {name} onto {} with {} on an area of {}, {} per area, but {} yields at no more than {}",
                 rest.step,
-                shape.pair_name(pair),
+                pair.name,
                 sig4(pressed),
                 sig4(area),
                 sig4(pressed / area),
@@ -279,7 +289,7 @@ pub fn beyond_plastic_limit(shape: &DeckShape) -> Vec<RunFinding> {
                 sig4(most)
             ),
             cure: format!("prescribe the displacement of {set} instead of the load"),
-            lines: format!("*BOUNDARY\n{set}, {0}, {0}, {1}", axis + 1, plain(part)),
+            lines: boundary([displaced(set, axis, plain(part))]),
         })
     })
 }

@@ -1,14 +1,14 @@
 //! Geometry of a deck for the rules: bodies, faces of surfaces, and the gap of each slave node of a pair.
 
-use nalgebra::Vector3;
+pub use super::sorted_points::Vector;
+use super::sorted_points::{SortedPoints, extent};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use stickslip_core::model::RunShape;
 use stickslip_exchange::calculix::cel::Slave;
 use stickslip_exchange::inp::Deck;
-use stickslip_exchange::inp::deck::{Adjust, Element, Faces, Family, Normal, Set, Step};
-
-/// A position or direction.
-pub type Vector = Vector3<f64>;
+use stickslip_exchange::inp::deck::{
+    Adjust, Faces, Family, Interaction, Normal, Section, Set, Step, Value,
+};
 
 /// Position tolerance of a tie without one, in sizes of a master face (CalculiX: 2.5 %).
 const TIE_TOLERANCE: f64 = 0.025;
@@ -57,59 +57,6 @@ impl SurfaceFace {
     }
 }
 
-/// Points sorted along the axis of their largest extent, to find near ones without a look at all of them.
-#[derive(Debug, Clone)]
-pub struct SortedPoints {
-    axis: usize,
-    /// Coordinate and index of each point, ascending.
-    keys: Vec<(f64, usize)>,
-}
-
-impl SortedPoints {
-    /// Sorts points.
-    pub fn new(points: &[Vector]) -> SortedPoints {
-        let extent = |axis: usize| {
-            let along = points.iter().map(|point| point[axis]);
-            let (least, most) = extent(along);
-            most - least
-        };
-        let axis = (0..3)
-            .max_by(|a, b| extent(*a).total_cmp(&extent(*b)))
-            .unwrap_or(0);
-        let mut keys: Vec<(f64, usize)> = points
-            .iter()
-            .enumerate()
-            .map(|(k, point)| (point[axis], k))
-            .collect();
-        keys.sort_by(|a, b| a.0.total_cmp(&b.0));
-        SortedPoints { axis, keys }
-    }
-
-    /// The points by their distance along the axis, nearest first: this distance and the index.
-    pub fn from(&self, point: Vector) -> impl Iterator<Item = (f64, usize)> {
-        let at = point[self.axis];
-        let start = self.keys.partition_point(|(key, _)| *key < at);
-        let (mut below, mut above) = (start, start);
-        std::iter::from_fn(move || {
-            let down = below
-                .checked_sub(1)
-                .and_then(|k| self.keys.get(k))
-                .map(|key| (at - key.0, key.1));
-            let up = self.keys.get(above).map(|key| (key.0 - at, key.1));
-            match (down, up) {
-                (Some(down), up) if up.is_none_or(|up| down.0 <= up.0) => {
-                    below -= 1;
-                    Some(down)
-                }
-                (_, up) => {
-                    above += 1;
-                    up
-                }
-            }
-        })
-    }
-}
-
 /// A slave node and the nearest master face.
 #[derive(Debug, Clone, Copy)]
 pub struct SlaveGap {
@@ -126,6 +73,10 @@ pub struct SlaveGap {
 /// A contact pair or a tie.
 #[derive(Debug, Clone)]
 pub struct PairShape {
+    /// Index of its card in the deck.
+    pub number: usize,
+    /// `SLAVE on MASTER`.
+    pub name: String,
     /// Indices of the slave and the master surface.
     pub surfaces: [usize; 2],
     /// Faces of the slave surface; empty for a surface of nodes.
@@ -151,10 +102,21 @@ impl PairShape {
         node.gap <= limit && node.beyond <= limit
     }
 
+    /// The slave nodes that touch at the start.
+    pub fn closed(&self) -> impl Iterator<Item = &SlaveGap> {
+        self.nodes.iter().filter(|node| self.is_closed(node))
+    }
+
     /// Normal of the master, averaged over the faces that slave nodes are nearest to.
     pub fn normal(&self) -> Vector {
         let sum: Vector = self.nodes.iter().map(|n| self.masters[n.face].normal).sum();
         sum.try_normalize(1e-12).unwrap_or_else(Vector::zeros)
+    }
+
+    /// The part of a motion along the master.
+    pub fn along(&self, motion: Vector) -> Vector {
+        let normal = self.normal();
+        motion - motion.dot(&normal) * normal
     }
 
     /// The slave nodes in front of the master.
@@ -204,14 +166,13 @@ impl<'d> DeckShape<'d> {
             faces: HashMap::new(),
         };
         shape.count_faces();
-        shape.ties = deck
-            .ties
-            .iter()
-            .map(|tie| shape.pair([tie.slave, tie.master], tie.tolerance))
+        let ties = deck.ties.iter().enumerate();
+        shape.ties = ties
+            .map(|(k, tie)| shape.pair(k, [tie.slave, tie.master], tie.tolerance))
             .collect();
         for tie in &mut shape.ties {
             tie.closes.get_or_insert(TIE_TOLERANCE * tie.sizes[1]);
-            if tie.nodes.iter().any(|node| tie.is_closed(node)) {
+            if tie.closed().next().is_some() {
                 let [one, other] = tie.groups.map(|group| shape.group_of[group]);
                 let groups = shape.group_of.iter_mut();
                 groups
@@ -219,16 +180,14 @@ impl<'d> DeckShape<'d> {
                     .for_each(|group| *group = other);
             }
         }
-        shape.pairs = deck
-            .pairs
-            .iter()
-            .map(|pair| {
-                let closes = match &pair.adjust {
-                    Some(Adjust::Within(length)) => Some(*length),
-                    Some(Adjust::Set(_)) => Some(f64::INFINITY),
-                    None => None,
-                };
-                shape.pair([pair.slave, pair.master], closes)
+        let pairs = deck.pairs.iter().enumerate();
+        shape.pairs = pairs
+            .map(|(k, pair)| {
+                let closes = pair.adjust.as_ref().map(|adjust| match adjust {
+                    Adjust::Within(length) => *length,
+                    Adjust::Set(_) => f64::INFINITY,
+                });
+                shape.pair(k, [pair.slave, pair.master], closes)
             })
             .collect();
         shape
@@ -245,30 +204,28 @@ impl<'d> DeckShape<'d> {
         self.reached().skip(self.failed.unwrap_or(0))
     }
 
+    /// The supports, then the displacements of all steps.
+    pub fn all_supports(&self) -> impl Iterator<Item = &Value> + Clone {
+        let motions = self.deck.steps.iter().flat_map(|step| &step.motions);
+        self.deck.supports.iter().chain(motions)
+    }
+
     /// The faces of all pairs and ties, and the positions of slaves.
     pub fn drawn(&self, slaves: &[Slave]) -> RunShape {
-        let labels: HashMap<u64, usize> = (0..self.deck.nodes.len())
-            .map(|node| (self.deck.nodes[node].label, node))
-            .collect();
+        let labels = self.deck.labels();
         let find = |label: &u32| labels.get(&u64::from(*label)).map(|&node| self.at(node));
-        let place = |slave: &Slave| match slave {
-            Slave::Node(node) => find(node).map(Into::into),
-            Slave::Face(corners) => {
-                let corners: Option<Vec<Vector>> = corners.iter().map(find).collect();
-                corners.and_then(|corners| mean(&corners)).map(Into::into)
-            }
+        let place = |slave: &Slave| {
+            let corners: Option<Vec<Vector>> = slave.nodes().iter().map(find).collect();
+            corners.and_then(|corners| mean(&corners)).map(Into::into)
         };
         let corners =
             |face: &SurfaceFace| face.corners.iter().map(|&n| self.at(n).into()).collect();
-        let pairs = || self.pairs.iter().chain(&self.ties);
+        let drawn = |faces: fn(&PairShape) -> &Vec<SurfaceFace>| {
+            let pairs = self.pairs.iter().chain(&self.ties);
+            pairs.flat_map(faces).map(corners).collect()
+        };
         RunShape {
-            faces: [
-                pairs()
-                    .flat_map(|pair| &pair.masters)
-                    .map(corners)
-                    .collect(),
-                pairs().flat_map(|pair| &pair.slaves).map(corners).collect(),
-            ],
+            faces: [drawn(|pair| &pair.masters), drawn(|pair| &pair.slaves)],
             slaves: slaves.iter().map(place).collect(),
         }
     }
@@ -278,20 +235,52 @@ impl<'d> DeckShape<'d> {
         Vector::from(self.deck.nodes[node].at)
     }
 
+    fn all_at(&self, nodes: &[usize]) -> Vec<Vector> {
+        nodes.iter().map(|&node| self.at(node)).collect()
+    }
+
+    /// Mean of an element's nodes.
+    pub fn element_centre(&self, element: usize) -> Option<Vector> {
+        mean(&self.all_at(&self.deck.elements[element].nodes))
+    }
+
     /// Group of a node, if it belongs to an element.
     pub fn group(&self, node: usize) -> Option<usize> {
         self.body_of[node].map(|body| self.group_of[body])
     }
 
-    /// Extent of a group, or of all groups, along a direction.
-    pub fn height(&self, group: Option<usize>, along: Vector) -> f64 {
-        let nodes = (0..self.deck.nodes.len()).filter(|n| {
-            let own = self.group(*n);
-            own.is_some() && group.is_none_or(|group| own == Some(group))
-        });
-        let at = nodes.map(|node| self.at(node).dot(&along));
-        let (least, most) = extent(at);
-        most - least
+    /// The groups of bodies; none if skipped cards may hold them.
+    pub fn groups(&self) -> BTreeSet<usize> {
+        let groups = self.group_of.iter().filter(|_| !self.deck.is_incomplete);
+        groups.copied().collect()
+    }
+
+    /// The nodes of a group.
+    pub fn group_nodes(&self, group: usize) -> impl Iterator<Item = usize> + Clone {
+        let nodes = 0..self.body_of.len();
+        nodes.filter(move |node| self.group(*node) == Some(group))
+    }
+
+    /// The elements of a body, by index.
+    pub fn elements(&self, body: usize) -> impl Iterator<Item = usize> {
+        let elements = self.deck.elements.iter().enumerate();
+        let own = elements.filter(move |(_, of)| self.body_of[of.nodes[0]] == Some(body));
+        own.map(|(k, _)| k)
+    }
+
+    /// The elements of a group, by index.
+    pub fn group_elements(&self, group: usize) -> impl Iterator<Item = usize> {
+        let elements = self.deck.elements.iter().enumerate();
+        let own = elements.filter(move |(_, of)| self.group(of.nodes[0]) == Some(group));
+        own.map(|(k, _)| k)
+    }
+
+    /// Extent of a group along a direction.
+    pub fn height(&self, group: usize, along: Vector) -> f64 {
+        extent(
+            self.group_nodes(group)
+                .map(|node| self.at(node).dot(&along)),
+        )
     }
 
     /// Name of a group: its bodies.
@@ -301,10 +290,15 @@ impl<'d> DeckShape<'d> {
         names.join(" with ")
     }
 
-    /// Name of a pair: `SLAVE on MASTER`.
-    pub fn pair_name(&self, pair: &PairShape) -> String {
-        let [slave, master] = pair.surfaces.map(|k| &self.deck.surfaces[k].name);
-        format!("{slave} on {master}")
+    /// The pairs that touch a group.
+    pub fn pairs_of(&self, group: usize) -> impl Iterator<Item = &PairShape> {
+        let pairs = self.pairs.iter();
+        pairs.filter(move |pair| pair.groups.contains(&group))
+    }
+
+    /// The law of a contact pair.
+    pub fn law(&self, pair: &PairShape) -> &'d Interaction {
+        &self.deck.interactions[self.deck.pairs[pair.number].interaction]
     }
 
     /// Whether a face lies between two elements.
@@ -321,34 +315,25 @@ impl<'d> DeckShape<'d> {
             pairs.any(|pair| pair.nodes.binary_search_by_key(node, |n| n.node).is_ok())
         };
         let is_part = |set: &&Set| {
-            set.members.iter().eq(nodes)
-                || set
-                    .members
-                    .iter()
-                    .all(|node| nodes.contains(node) && !is_slave(node))
+            let mut members = set.members.iter();
+            members.clone().eq(nodes) || members.all(|n| nodes.contains(n) && !is_slave(n))
         };
         let sets = self.deck.node_sets.iter().filter(is_part);
         let set = sets.rev().max_by_key(|set| set.members.len());
-        let set = set.filter(|set| !set.members.is_empty());
-        let first = nodes
-            .first()
-            .map(|&node| self.deck.nodes[node].label.to_string());
-        set.map_or_else(|| first.unwrap_or_default(), |set| set.name.clone())
+        match set.filter(|set| !set.members.is_empty()) {
+            Some(set) => set.name.clone(),
+            None => {
+                let first = nodes.first().map(|&node| self.deck.nodes[node].label);
+                first.map_or_else(String::new, |label| label.to_string())
+            }
+        }
     }
 
     /// The material of an element, by index.
     pub fn material(&self, element: usize) -> Option<usize> {
-        let sections = self.deck.sections.iter().rev();
-        let has = |set: usize| {
-            self.deck.element_sets[set]
-                .members
-                .binary_search(&element)
-                .is_ok()
-        };
-        sections
-            .into_iter()
-            .find(|section| has(section.set))
-            .map(|section| section.material)
+        let mut sections = self.deck.sections.iter().rev();
+        let section = sections.find(|section| is_member(self.deck, section, element));
+        section.map(|section| section.material)
     }
 
     /// Young's modulus of the softer of the materials on both sides of a pair, with the material's name.
@@ -363,57 +348,67 @@ impl<'d> DeckShape<'d> {
     }
 
     /// Stiffness of a pair's law: pressure per length.
-    pub fn stiffness(&self, pair: usize) -> Option<f64> {
-        let law = &self.deck.interactions[self.deck.pairs[pair].interaction];
-        match law.normal {
+    pub fn stiffness(&self, pair: &PairShape) -> Option<f64> {
+        match self.law(pair).normal {
             Normal::Linear { stiffness } | Normal::Tied { stiffness } => Some(stiffness),
             Normal::Hard => None,
         }
     }
 
+    /// Whether a pair holds in tension and shear, too.
+    pub fn is_tied(&self, pair: &PairShape) -> bool {
+        matches!(self.law(pair).normal, Normal::Tied { .. })
+    }
+
     /// Directions in which a group can move: translations, then rotations. None for beams in 3-D, whose rotations the rules do
     /// not consider.
     pub fn modes(&self, group: usize) -> [bool; 6] {
-        let own = |element: &&Element| {
-            let first = element.nodes.first();
-            first.and_then(|node| self.group(*node)) == Some(group)
-        };
-        let families: BTreeSet<Family> = self
-            .deck
-            .elements
-            .iter()
-            .filter(own)
-            .map(|element| element.kind.family)
-            .collect();
-        let is_plane = [Family::PlaneStrain, Family::PlaneStress];
-        match () {
-            () if families.contains(&Family::Solid) => [true; 6],
-            () if families.contains(&Family::Axisymmetric) => {
-                [false, true, false, false, false, false]
-            }
-            () if is_plane.iter().any(|family| families.contains(family)) => {
-                [true, true, false, false, false, true]
-            }
-            () if self.deck.is_solid() => [false; 6],
-            () => [true, true, false, false, false, true],
+        let family = |element: usize| self.deck.elements[element].kind.family;
+        let families: BTreeSet<Family> = self.group_elements(group).map(family).collect();
+        let has = |family: Family| families.contains(&family);
+        let is_plane = has(Family::PlaneStrain) || has(Family::PlaneStress);
+        if has(Family::Solid) {
+            [true; 6]
+        } else if has(Family::Axisymmetric) {
+            [false, true, false, false, false, false]
+        } else if self.deck.is_solid() && !is_plane {
+            [false; 6]
+        } else {
+            [true, true, false, false, false, true]
         }
     }
 
     /// The faces of a surface.
-    pub fn faces(&self, surface: usize) -> Vec<SurfaceFace> {
-        match &self.deck.surfaces[surface].of {
-            Faces::Nodes(_) => Vec::new(),
-            Faces::Elements(sides) => {
-                let faces = sides.iter();
-                faces.filter_map(|&(e, side)| self.face(e, side)).collect()
-            }
-        }
+    fn faces(&self, surface: usize) -> Vec<SurfaceFace> {
+        let sides = match &self.deck.surfaces[surface].of {
+            Faces::Nodes(_) => &[][..],
+            Faces::Elements(sides) => sides,
+        };
+        let faces = sides.iter();
+        faces.filter_map(|&(e, side)| self.face(e, side)).collect()
+    }
+
+    /// The faces of an element.
+    pub fn element_faces(&self, element: usize) -> impl Iterator<Item = SurfaceFace> {
+        let sides = 0..self.deck.elements[element].kind.cell.sides().len();
+        sides.filter_map(move |side| self.face(element, side))
+    }
+
+    /// The faces of an element that it does not share with another.
+    pub fn outer_faces(&self, element: usize) -> impl Iterator<Item = SurfaceFace> {
+        let faces = self.element_faces(element);
+        faces.filter(|face| !self.is_inner(face))
+    }
+
+    /// A side of an element as a line of `*SURFACE`.
+    pub fn surface_line(&self, element: usize, side: usize) -> String {
+        format!("{}, S{}", self.deck.elements[element].label, side + 1)
     }
 
     /// A side of an element; `None` if it has no area.
     pub fn face(&self, element: usize, side: usize) -> Option<SurfaceFace> {
         let (corners, _) = self.deck.face(element, side);
-        let at: Vec<Vector> = corners.iter().map(|&node| self.at(node)).collect();
+        let at = self.all_at(&corners);
         let centre = mean(&at)?;
         let across = match at[..] {
             [a, b] => (b - a).cross(&Vector::z()),
@@ -422,7 +417,7 @@ impl<'d> DeckShape<'d> {
             _ => return None,
         };
         let own = &self.deck.elements[element].nodes;
-        let body = mean(&own.iter().map(|&node| self.at(node)).collect::<Vec<_>>())?;
+        let body = self.element_centre(element)?;
         let normal = across.try_normalize(0.0)?;
         let outward = normal * (centre - body).dot(&normal).signum();
         let area = across.norm();
@@ -437,7 +432,6 @@ impl<'d> DeckShape<'d> {
             let middle = *own.get(cell.corners() + edge)?;
             Some(self.at(middle) - (at[k] + at[next]) / 2.0)
         });
-        let bulges = bulges.collect();
         Some(SurfaceFace {
             element,
             side,
@@ -446,8 +440,8 @@ impl<'d> DeckShape<'d> {
             area,
             size: if at.len() == 2 { area } else { area.sqrt() },
             radius: radius.fold(0.0, f64::max),
+            bulges: bulges.collect(),
             corners,
-            bulges,
         })
     }
 
@@ -461,7 +455,7 @@ impl<'d> DeckShape<'d> {
     }
 
     /// The nodes of a surface, midside nodes included.
-    pub fn surface_nodes(&self, surface: usize) -> BTreeSet<usize> {
+    fn surface_nodes(&self, surface: usize) -> BTreeSet<usize> {
         match &self.deck.surfaces[surface].of {
             Faces::Nodes(nodes) => nodes.iter().copied().collect(),
             Faces::Elements(sides) => {
@@ -472,63 +466,52 @@ impl<'d> DeckShape<'d> {
         }
     }
 
-    fn pair(&self, surfaces: [usize; 2], closes: Option<f64>) -> PairShape {
+    fn pair(&self, number: usize, surfaces: [usize; 2], closes: Option<f64>) -> PairShape {
         let [slaves, masters] = surfaces.map(|surface| self.faces(surface));
         let nodes = self.surface_nodes(surfaces[0]);
-        let group = |node: Option<usize>| node.and_then(|n| self.group(n)).unwrap_or(usize::MAX);
-        let groups = [
-            group(nodes.first().copied()),
-            group(
-                masters
-                    .first()
-                    .and_then(|face| face.corners.first().copied()),
-            ),
-        ];
+        let group = |node: Option<&usize>| node.and_then(|n| self.group(*n)).unwrap_or(usize::MAX);
+        let master = masters.first().map(|face| &face.corners[0]);
+        let groups = [group(nodes.first()), group(master)];
         let size = |faces: &[SurfaceFace]| {
             let sum: f64 = faces.iter().map(|face| face.size).sum();
             (!faces.is_empty()).then(|| sum / faces.len() as f64)
         };
         let master = size(&masters).unwrap_or(0.0);
-        let centres: Vec<Vector> = masters.iter().map(|face| face.centre).collect();
-        let centres = SortedPoints::new(&centres);
-        let gaps = nodes
-            .iter()
-            .filter_map(|&node| self.gap(node, (&masters, &centres)));
-        PairShape {
-            nodes: gaps.collect(),
-            centres,
+        let mut pair = PairShape {
+            number,
+            name: surfaces.map(|k| &*self.deck.surfaces[k].name).join(" on "),
+            nodes: Vec::new(),
+            centres: SortedPoints::new(masters.iter().map(|face| face.centre).collect()),
             sizes: [size(&slaves).unwrap_or(master), master],
             surfaces,
             slaves,
             masters,
             groups,
             closes,
-        }
+        };
+        let gap = |node: usize| {
+            let (face, gap, beyond) = self.nearest(self.at(node), &pair)?;
+            Some(SlaveGap {
+                node,
+                gap,
+                beyond,
+                face,
+            })
+        };
+        pair.nodes = nodes.into_iter().filter_map(gap).collect();
+        pair
     }
 
-    fn gap(&self, node: usize, masters: (&[SurfaceFace], &SortedPoints)) -> Option<SlaveGap> {
-        let (face, gap, beyond) = self.nearest(self.at(node), masters)?;
-        Some(SlaveGap {
-            node,
-            gap,
-            beyond,
-            face,
-        })
-    }
-
-    /// The face nearest to a point, the distance along its normal, and the distance beyond its edge. Midside nodes count for the
-    /// distance along the normal only.
-    pub fn nearest(
-        &self,
-        point: Vector,
-        (faces, centres): (&[SurfaceFace], &SortedPoints),
-    ) -> Option<(usize, f64, f64)> {
+    /// The master face nearest to a point, the distance along its normal, and the distance beyond its edge. Midside nodes count for
+    /// the distance along the normal only.
+    pub fn nearest(&self, point: Vector, pair: &PairShape) -> Option<(usize, f64, f64)> {
+        let faces = &pair.masters;
         let largest = faces.iter().map(|face| face.radius).fold(0.0, f64::max);
         let tie = 1e-9 * largest;
         let mut best: Option<(f64, usize, Vector, [f64; 4])> = None;
         // Faces with the same closest point: the point is on an edge between them, and they share the normal.
         let mut normal = Vector::zeros();
-        for (along, k) in centres.from(point) {
+        for (along, k) in pair.centres.from(point) {
             let is_farther = |least: f64| best.is_some_and(|(distance, ..)| least > distance + tie);
             if is_farther(along - largest) {
                 break;
@@ -537,8 +520,7 @@ impl<'d> DeckShape<'d> {
             if is_farther((point - face.centre).norm() - face.radius) {
                 continue;
             }
-            let at: Vec<Vector> = face.corners.iter().map(|&node| self.at(node)).collect();
-            let (closest, weights) = closest(point, &at);
+            let (closest, weights) = closest(point, &self.all_at(&face.corners));
             let distance = (point - closest).norm();
             match best {
                 Some((known, ..)) if (distance - known).abs() <= tie => normal += face.normal,
@@ -554,13 +536,19 @@ impl<'d> DeckShape<'d> {
         Some((k, gap, (off - flat * normal).norm()))
     }
 
+    /// Factor of a value at the end of a step.
+    pub fn last_factor(&self, step: &Step, amplitude: Option<usize>) -> f64 {
+        amplitude.map_or(1.0, |_| self.factor(step, amplitude, step.time.period))
+    }
+
     /// Factor of a load or displacement of a step at a time of the step.
     pub fn factor(&self, step: &Step, amplitude: Option<usize>, time: f64) -> f64 {
         let Some(amplitude) = amplitude else {
             let ramp = time / step.time.period.max(f64::MIN_POSITIVE);
-            return match step.at_once {
-                true => f64::from(time > 0.0),
-                false => ramp.min(1.0),
+            return if step.at_once {
+                f64::from(time > 0.0)
+            } else {
+                ramp.min(1.0)
             };
         };
         let points = &self.deck.amplitudes[amplitude].points;
@@ -576,11 +564,12 @@ impl<'d> DeckShape<'d> {
     }
 }
 
-/// The smallest and the largest of some numbers.
-fn extent(numbers: impl Iterator<Item = f64>) -> (f64, f64) {
-    numbers.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| {
-        (a.min(x), b.max(x))
-    })
+/// The slave node with the smallest gap in front of its master, with its pair.
+pub fn nearest<'s>(
+    pairs: impl Iterator<Item = &'s PairShape>,
+) -> Option<(&'s PairShape, &'s SlaveGap)> {
+    let nearest = pairs.filter_map(|pair| Some((pair, pair.nearest()?)));
+    nearest.min_by(|a, b| a.1.gap.total_cmp(&b.1.gap))
 }
 
 /// The point of a segment, triangle or quadrilateral that is closest to a point, and the weights of the corners there.
@@ -666,16 +655,17 @@ fn bodies(deck: &Deck) -> (Vec<Option<usize>>, Vec<String>) {
     (body_of, names)
 }
 
+/// Whether a section has an element.
+fn is_member(deck: &Deck, section: &Section, element: usize) -> bool {
+    let members = &deck.element_sets[section.set].members;
+    members.binary_search(&element).is_ok()
+}
+
 /// Name of a body by one of its elements: the set of its section, with the element if the name is in use.
 fn name(deck: &Deck, element: usize, used: &[String]) -> String {
     let label = deck.elements[element].label;
-    let has = |set: usize| {
-        deck.element_sets[set]
-            .members
-            .binary_search(&element)
-            .is_ok()
-    };
-    match deck.sections.iter().find(|section| has(section.set)) {
+    let mut sections = deck.sections.iter();
+    match sections.find(|section| is_member(deck, section, element)) {
         None => format!("the body of element {label}"),
         Some(section) => match deck.element_sets[section.set].name.clone() {
             name if used.contains(&name) => format!("{name} (element {label})"),

@@ -1,9 +1,9 @@
 //! Rules on steps: how far prescribed displacements move contacts per increment and in all, and whether increments can be cut.
 
-use super::numbers::{plain, rounded};
+use super::numbers::{boundary, displaced, plain, rounded, two_digits};
 use super::pairs::pair_card;
 use super::shape::{DeckShape, PairShape, Vector};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use stickslip_core::RunFinding;
 use stickslip_exchange::inp::deck::{Direction, Step};
 use stickslip_scene::number::sig4;
@@ -29,20 +29,14 @@ fn travel(shape: &DeckShape, step: usize, group: usize, times: [f64; 2]) -> Vect
     let this = &deck.steps[step];
     let mut before: HashMap<(usize, Direction), f64> = HashMap::new();
     for earlier in &deck.steps[..step] {
-        let end = earlier.time.period;
         for value in &earlier.motions {
-            let part = value
-                .amplitude
-                .map_or(1.0, |_| shape.factor(earlier, value.amplitude, end));
+            let part = shape.last_factor(earlier, value.amplitude);
             before.insert(value.target(), value.value * part);
         }
     }
     for value in &this.motions {
-        let axis = match value.direction {
-            Direction::X => 0,
-            Direction::Y => 1,
-            Direction::Z => 2,
-            Direction::Rotation => continue,
+        let Some(axis) = value.direction.axis() else {
+            continue;
         };
         if shape.group(value.node) != Some(group) {
             continue;
@@ -65,19 +59,15 @@ fn relative(shape: &DeckShape, step: usize, pair: &PairShape, times: [f64; 2]) -
     slave - master
 }
 
-/// The steps that may be the cause, with each pair and their numbers.
-fn moves<'s>(
-    shape: &'s DeckShape,
-) -> impl Iterator<Item = (usize, &'s Step, usize, &'s PairShape)> {
-    shape.suspects().flat_map(|(k, step)| {
-        let pairs = shape.pairs.iter().enumerate();
-        pairs.map(move |(number, pair)| (k, step, number, pair))
-    })
+/// The steps that may be the cause, with their numbers and each pair.
+fn moves<'s>(shape: &'s DeckShape) -> impl Iterator<Item = (usize, &'s Step, &'s PairShape)> {
+    let pairs = |(k, step)| shape.pairs.iter().map(move |pair| (k, step, pair));
+    shape.suspects().flat_map(pairs)
 }
 
 /// First increments that move a contact by much of an element.
 pub fn first_increment(shape: &DeckShape) -> Vec<RunFinding> {
-    let large = moves(shape).filter_map(|(k, step, _, pair)| {
+    let large = moves(shape).filter_map(|(k, step, pair)| {
         let time = step.time;
         let first = relative(shape, k, pair, [0.0, time.initial]).norm();
         let size = pair.sizes[0];
@@ -91,7 +81,7 @@ pub fn first_increment(shape: &DeckShape) -> Vec<RunFinding> {
             cause: format!(
                 "the first increment of step {} moves {} by {}, {} times the size {} of a slave face",
                 k + 1,
-                shape.pair_name(pair),
+                pair.name,
                 sig4(first),
                 sig4(first / size),
                 sig4(size)
@@ -147,44 +137,41 @@ pub fn no_cuts(shape: &DeckShape) -> Vec<RunFinding> {
 /// Sliding over elements in steps, or pairs, with small displacements.
 pub fn small_sliding(shape: &DeckShape) -> Vec<RunFinding> {
     let mut found: Vec<RunFinding> = Vec::new();
-    for (k, step, number, pair) in moves(shape) {
-        let (all, normal) = (
-            relative(shape, k, pair, [0.0, step.time.period]),
-            pair.normal(),
-        );
-        let along = (all - all.dot(&normal) * normal).norm();
-        let card = &shape.deck.pairs[number];
+    for (k, step, pair) in moves(shape) {
+        let along = pair
+            .along(relative(shape, k, pair, [0.0, step.time.period]))
+            .norm();
+        let card = &shape.deck.pairs[pair.number];
         if along <= SLIDING * pair.sizes[0] || (step.nlgeom && !card.small_sliding) {
             continue;
         }
-        let (why, cure, lines) = match step.nlgeom {
-            true => (
+        let (why, cure, lines) = if step.nlgeom {
+            (
                 "the pair has SMALL SLIDING, which keeps the first master face",
                 format!(
                     "leave SMALL SLIDING out (*CONTACT PAIR before line {})",
                     card.place.line
                 ),
-                pair_card(shape.deck, card, ""),
-            ),
-            false => {
-                let most = step.increments;
-                let most = most.map_or(String::new(), |most| format!(", INC={most}"));
-                (
-                    "the step has no NLGEOM",
-                    format!(
-                        "large displacements in all steps (line {})",
-                        step.place.line
-                    ),
-                    format!("*STEP, NLGEOM{most}"),
-                )
-            }
+                pair_card(shape, pair, ""),
+            )
+        } else {
+            (
+                "the step has no NLGEOM",
+                format!(
+                    "large displacements in all steps (line {})",
+                    step.place.line
+                ),
+                step.increments.map_or("*STEP, NLGEOM".into(), |most| {
+                    format!("*STEP, NLGEOM, INC={most}")
+                }),
+            )
         };
         found.push(RunFinding {
             rule: "small displacements",
             cause: format!(
                 "step {} slides {} by {}, {} slave faces, but {why}",
                 k + 1,
-                shape.pair_name(pair),
+                pair.name,
                 sig4(along),
                 sig4(along / pair.sizes[0])
             ),
@@ -197,7 +184,7 @@ pub fn small_sliding(shape: &DeckShape) -> Vec<RunFinding> {
 
 /// Prescribed displacements that squeeze the bodies of a pair by much of their height.
 pub fn squeezed(shape: &DeckShape) -> Vec<RunFinding> {
-    let squeezed = moves(shape).filter_map(|(k, step, number, pair)| {
+    let squeezed = moves(shape).filter_map(|(k, step, pair)| {
         let normal = pair.normal();
         let moved = relative(shape, k, pair, [0.0, step.time.period]);
         let gap = pair.nearest()?.gap.max(0.0);
@@ -206,21 +193,14 @@ pub fn squeezed(shape: &DeckShape) -> Vec<RunFinding> {
             let material = faces.first().and_then(|face| shape.material(face.element));
             material.and_then(|k| shape.deck.materials[k].elastic)
         });
-        let [slave, master] = pair.groups.map(|group| shape.height(Some(group), normal));
-        let (height, name) = match moduli {
-            [Some((a, _)), Some((b, _))] if a > SOFT * b => {
-                (master, shape.group_name(pair.groups[1]))
-            }
-            [Some((a, _)), Some((b, _))] if b > SOFT * a => {
-                (slave, shape.group_name(pair.groups[0]))
-            }
-            _ => (
-                slave + master,
-                pair.groups
-                    .map(|group| shape.group_name(group))
-                    .join(" and "),
-            ),
+        let soft = match moduli {
+            [Some((a, _)), Some((b, _))] if a > SOFT * b => &pair.groups[1..],
+            [Some((a, _)), Some((b, _))] if b > SOFT * a => &pair.groups[..1],
+            _ => &pair.groups,
         };
+        let height: f64 = soft.iter().map(|group| shape.height(*group, normal)).sum();
+        let names: Vec<String> = soft.iter().map(|group| shape.group_name(*group)).collect();
+        let name = names.join(" and ");
         let stays = (gap + SQUEEZABLE * height) / (gap + squeezed);
         (height > 0.0 && squeezed > SQUEEZED * height).then(|| RunFinding {
             rule: "squeezed flat",
@@ -232,7 +212,7 @@ pub fn squeezed(shape: &DeckShape) -> Vec<RunFinding> {
                 sig4(height)
             ),
             cure: format!("a smaller displacement, {SQUEEZABLE} of the height"),
-            lines: shorter(shape, k, number, stays),
+            lines: shorter(shape, step, pair, stays),
         })
     });
     squeezed.collect()
@@ -240,46 +220,41 @@ pub fn squeezed(shape: &DeckShape) -> Vec<RunFinding> {
 
 /// Prescribed displacements that move slave nodes past the edge of their master.
 pub fn past_the_edge(shape: &DeckShape) -> Vec<RunFinding> {
-    let mut found = Vec::new();
-    for (number, pair) in shape.pairs.iter().enumerate() {
+    let first = |pair: &PairShape| {
         let mut moved = Vector::zeros();
-        for (k, step) in shape.reached() {
+        shape.reached().find_map(|(k, step)| {
             moved += relative(shape, k, pair, [0.0, step.time.period]);
-            let normal = pair.normal();
-            let along = moved - moved.dot(&normal) * normal;
+            let along = pair.along(moved);
             let limit = 0.1 * pair.sizes[0];
             let past = |part: f64, limit: f64| {
-                let of = pair.nodes.iter().filter(|node| node.beyond <= limit);
-                let of = of.filter(|node| {
+                pair.nodes.iter().filter(|node| node.beyond <= limit).filter(|node| {
                     let at = shape.at(node.node) + part * along;
-                    let off = shape.nearest(at, (&pair.masters, &pair.centres));
+                    let off = shape.nearest(at, pair);
                     off.is_some_and(|(_, _, beyond)| beyond > limit)
-                });
-                of.count()
+                }).count()
             };
-            let beyond = |part: f64| past(part, limit);
             let lost = past(1.0, 5.0 * limit);
             if along.norm() <= limit || lost == 0 {
-                continue;
+                return None;
             }
             // The part of the way on which all nodes stay on the master.
             let (mut stays, mut leaves) = (0.0, 1.0);
             for _ in 0..20 {
                 let half = (stays + leaves) / 2.0;
-                match beyond(half) {
+                match past(half, limit) {
                     0 => stays = half,
                     _ => leaves = half,
                 }
             }
             let master = &shape.deck.surfaces[pair.surfaces[1]];
-            found.push(RunFinding {
+            Some(RunFinding {
                 rule: "past the edge",
                 cause: format!(
                     "step {} moves {lost} of {} slave nodes of {} past the edge of the master: they slide {}, and the \
                      first leaves it after {}",
                     k + 1,
                     pair.nodes.len(),
-                    shape.pair_name(pair),
+                    pair.name,
                     sig4(along.norm()),
                     sig4(along.norm() * stays)
                 ),
@@ -287,43 +262,32 @@ pub fn past_the_edge(shape: &DeckShape) -> Vec<RunFinding> {
                     "add the faces that the slave reaches to {} (line {}), or slide less",
                     master.name, master.place.line
                 ),
-                lines: shorter(shape, k, number, stays),
-            });
-            break;
-        }
-    }
-    found
+                lines: shorter(shape, step, pair, stays),
+            })
+        })
+    };
+    shape.pairs.iter().filter_map(first).collect()
 }
 
 /// The lines of a step's displacements of both bodies of a pair, scaled.
-fn shorter(shape: &DeckShape, step: usize, pair: usize, part: f64) -> String {
-    let mut lines: Vec<String> = Vec::new();
-    let step = &shape.deck.steps[step];
-    let mut places: Vec<_> = Vec::new();
-    for value in step.motions.iter().filter(|value| value.value != 0.0) {
-        let own = shape.group(value.node);
-        let own = own.is_some_and(|own| shape.pairs[pair].groups.contains(&own));
-        if !own || places.contains(&(value.place, value.direction)) {
-            continue;
-        }
-        let same = step
-            .motions
-            .iter()
-            .filter(|other| other.place == value.place);
-        let set = shape.set_name(&same.map(|other| other.node).collect());
-        let number = match value.direction {
-            Direction::X => 1,
-            Direction::Y => 2,
-            Direction::Z => 3,
-            Direction::Rotation => continue,
-        };
-        let size = 0.95 * part * value.value;
-        let size: f64 = format!("{size:.1e}").parse().unwrap_or(size);
-        lines.push(format!("{set}, {number}, {number}, {}", plain(size)));
-        places.push((value.place, value.direction));
-    }
-    match lines.is_empty() {
-        true => String::new(),
-        false => format!("*BOUNDARY\n{}", lines.join("\n")),
-    }
+fn shorter(shape: &DeckShape, step: &Step, pair: &PairShape, part: f64) -> String {
+    let mut places = HashSet::new();
+    let lines = step
+        .motions
+        .iter()
+        .filter(|value| {
+            let own = shape.group(value.node);
+            let own = own.is_some_and(|own| pair.groups.contains(&own));
+            own && value.value != 0.0 && places.insert((value.place, value.direction))
+        })
+        .filter_map(|value| {
+            let same = step
+                .motions
+                .iter()
+                .filter(|other| other.place == value.place);
+            let set = shape.set_name(&same.map(|other| other.node).collect());
+            let size = two_digits(0.95 * part * value.value);
+            Some(displaced(&set, value.direction.axis()?, plain(size)))
+        });
+    boundary(lines)
 }
