@@ -261,6 +261,11 @@ fn the_end_of_the_path_is_named_where_contacts_change_or_an_element_is_inverted(
             "where modes change (q.2 fixed → free, q.3 sliding → free); no state was found beyond it",
         ),
         (
+            "tests/findings/equilibrium-is-lost.ron",
+            "equilibrium is lost at load ",
+            "with the loads just beyond held, a damped motion leaves it; node q.23 has moved by ",
+        ),
+        (
             "tests/findings/path-ends-in-an-inverted-element.ron",
             "equilibrium exists on this path up to load ",
             "beyond it every step tried inverts element 1 of q at ",
@@ -273,7 +278,7 @@ fn the_end_of_the_path_is_named_where_contacts_change_or_an_element_is_inverted(
         let found = lines.find_map(|line| line.strip_prefix(&*named));
         let (load, rest) = found
             .unwrap_or_else(|| panic!("{reason}"))
-            .split_once([',', ';'])
+            .split_once([',', ';', ':'])
             .unwrap();
         assert!(rest.trim().starts_with(beyond), "{rest}");
         let load: f64 = load.parse().unwrap();

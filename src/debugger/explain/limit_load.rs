@@ -6,6 +6,8 @@
 //! **Largest load.** From the last equilibrium, follows the path by arc length until the load falls, the path ends at a change of
 //! contacts, or every further step inverts an element.
 //!
+//! **Lost equilibrium.** If the path tells nothing, a damped motion leaves the last equilibrium ([`super::moves_away`]).
+//!
 //! **Loose body.** Repeats the failed increment in smaller steps ([`super::load_limit_probe`]). In the last equilibrium, computes the remaining
 //! resistance of each contact of the body against the free motion. With v the relative velocity, friction resists with at
 //! most tan φ F_n + c per |v_t|, of which |F_t| is used; an opening contact yields F_n per v_n until its force is zero.
@@ -14,6 +16,7 @@
 //! checked directly ([`body_without_friction`]).
 
 use super::load_limit_probe::{LoadLimitProbe, reach};
+use super::moves_away::moves_away;
 use super::rigid_motion::BodyMotion;
 use super::surface_end::passed_end;
 use super::{names, strain};
@@ -253,10 +256,10 @@ fn of_cut_increment(
         if state.sub_increment.cut == 0 {
             return None;
         }
-        return passed_end(stepper, state, stop).or_else(|| {
-            let found = largest_load(stepper, state, stop)?;
-            Some(words(&found, stepper.model()))
-        });
+        let model = stepper.model().clone();
+        return passed_end(stepper, state, stop)
+            .or_else(|| largest_load(stepper, state, stop).map(|found| words(&found, &model)))
+            .or_else(|| moves_away(&model, state, stop));
     };
     let found = reach(stepper, state, stop)?;
     let LoadLimitProbe { load, from, .. } = found;
