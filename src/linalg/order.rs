@@ -2,12 +2,9 @@
 
 use super::check::SolveError;
 use super::dissection;
-use super::graph::Graph;
+use super::graph::{Graph, least_fill};
 use super::pattern::Pattern;
 use super::tree::in_postorder;
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::sparse::SymbolicSparseColMatRef;
-use faer::sparse::linalg::amd;
 
 /// A matrix with at least this many unknowns is dissected if their positions are known.
 const LARGE: usize = 10_000;
@@ -67,17 +64,4 @@ fn dissected(pattern: &Pattern, positions: &[[f64; 2]]) -> Result<Vec<usize>, So
     let order = in_postorder(&graph, dissection::order(&graph, &of_groups)?);
     let members = order.iter().flat_map(|&group| graph.members(group));
     Ok(members.copied().collect())
-}
-
-/// A fill-reducing order of a symmetric graph, given by its adjacency lists.
-pub(super) fn least_fill(starts: &[usize], neighbours: &[usize]) -> Result<Vec<usize>, SolveError> {
-    let count = starts.len() - 1;
-    let graph = SymbolicSparseColMatRef::new_checked(count, count, starts, None, neighbours);
-    let (mut order, mut place) = (vec![0; count], vec![0; count]);
-    let request = amd::order_scratch::<usize>(count, neighbours.len());
-    let mut memory = MemBuffer::try_new(request).map_err(|_| SolveError::OutOfMemory)?;
-    let stack = MemStack::new(&mut memory);
-    amd::order(&mut order, &mut place, graph, Default::default(), stack)
-        .map_err(|_| SolveError::OutOfMemory)?;
-    Ok(order)
 }
