@@ -64,12 +64,14 @@ impl Line {
 
     /// The text with escape sequences for bold and underline.
     pub fn ansi(&self) -> String {
-        let piece = |(style, text): &(Style, String)| match style {
-            Style::Plain => text.clone(),
-            Style::Heading => format!("\u{1b}[1;4m{text}\u{1b}[0m"),
-            Style::Strong | Style::Code => format!("\u{1b}[1m{text}\u{1b}[0m"),
-        };
-        self.pieces.iter().map(piece).collect()
+        self.pieces
+            .iter()
+            .map(|(style, text)| match style {
+                Style::Plain => text.clone(),
+                Style::Heading => format!("\u{1b}[1;4m{text}\u{1b}[0m"),
+                Style::Strong | Style::Code => format!("\u{1b}[1m{text}\u{1b}[0m"),
+            })
+            .collect()
     }
 }
 
@@ -140,14 +142,15 @@ fn heading(line: &str) -> Option<Line> {
 fn block(code: &[&str], width: usize) -> Vec<Line> {
     let widest = code.iter().map(|line| line.width()).max().unwrap_or(0);
     let indent = INDENT.min(width.saturating_sub(widest));
-    let line = |line: &&str| {
-        if line.is_empty() {
-            Line::default()
-        } else {
-            Line::new(Style::Plain, format!("{:indent$}{line}", ""))
-        }
-    };
-    code.iter().map(line).collect()
+    code.iter()
+        .map(|line| {
+            if line.is_empty() {
+                Line::default()
+            } else {
+                Line::new(Style::Plain, format!("{:indent$}{line}", ""))
+            }
+        })
+        .collect()
 }
 
 /// The marker of a list item and its text; a plain paragraph has an empty marker.
@@ -379,9 +382,8 @@ fn longest_word(cell: &[(Style, String)]) -> usize {
 fn share(wanted: &[usize], least: &[usize], room: usize) -> Vec<usize> {
     let mut widths = wanted.to_vec();
     while widths.iter().sum::<usize>() > room {
-        let shrinks = |column: &usize| widths[*column] > least[*column];
         let Some(widest) = (0..widths.len())
-            .filter(shrinks)
+            .filter(|column| widths[*column] > least[*column])
             .max_by_key(|column| widths[*column])
         else {
             break;

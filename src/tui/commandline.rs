@@ -194,8 +194,9 @@ impl CommandLine {
             }
         };
         let lines = paint::wrap(&hint, width.saturating_sub(2)).into_iter();
-        let line = |line| Line::styled(format!(" {line}"), theme.faint);
-        lines.map(line).collect()
+        lines
+            .map(|line| Line::styled(format!(" {line}"), theme.faint))
+            .collect()
     }
 
     /// Describes the parameter that is being set, or lists all parameters.

@@ -190,8 +190,8 @@ impl LessonQuantity {
             ("key", _, action) => {
                 let entry = action::ACTIONS.iter().find(|entry| entry.name == action);
                 let key = entry.and_then(|entry| entry.keys.first());
-                let none = || LessonError::NoKey(action.into());
-                key.map(|key| LessonQuantity::Key(key)).ok_or_else(none)
+                key.map(|key| LessonQuantity::Key(key))
+                    .ok_or_else(|| LessonError::NoKey(action.into()))
             }
             ("right", _, "") => Ok(LessonQuantity::Right),
             (_, Some(whole), "") => Ok(LessonQuantity::Solve(whole)),
@@ -363,15 +363,16 @@ pub fn number(text: &str, context: &Context) -> Result<LessonQuantity, LessonErr
 ///
 /// # Errors If they cannot be parsed.
 pub fn settings(text: &str) -> Result<Vec<(String, String)>, LessonError> {
-    let setting = |word: &str| {
-        let (path, value) = word.split_once('=')?;
-        Some((path.to_owned(), value.to_owned()))
-    };
-    let settings: Option<Vec<_>> = text.split_whitespace().map(setting).collect();
-    let none = || LessonError::NoRun(text.to_owned());
+    let settings: Option<Vec<_>> = text
+        .split_whitespace()
+        .map(|word| {
+            let (path, value) = word.split_once('=')?;
+            Some((path.to_owned(), value.to_owned()))
+        })
+        .collect();
     settings
         .filter(|settings| !settings.is_empty())
-        .ok_or_else(none)
+        .ok_or_else(|| LessonError::NoRun(text.to_owned()))
 }
 
 fn unknown(word: &str) -> LessonError {
@@ -419,11 +420,10 @@ impl Template {
     /// # Errors
     /// [`LessonError::TellsAnswer`] if it is not allowed.
     pub fn check_hint(&self, asked: Option<&LessonQuantity>) -> Result<(), LessonError> {
-        let tells = |piece: &Piece| match piece {
+        if self.0.iter().any(|piece| match piece {
             Piece::Value(quantity) => quantity.looks_ahead() || Some(quantity) == asked,
             Piece::Words(_) => false,
-        };
-        if self.0.iter().any(tells) {
+        }) {
             Err(LessonError::TellsAnswer)
         } else {
             Ok(())
@@ -434,10 +434,12 @@ impl Template {
     ///
     /// # Errors If a value is not known.
     pub fn fill(&self, look: &FrameValues, right: &str) -> Result<String, LessonError> {
-        let piece = |piece: &Piece| match piece {
-            Piece::Words(words) => Ok(words.clone()),
-            Piece::Value(quantity) => quantity.text(look, right),
-        };
-        self.0.iter().map(piece).collect()
+        self.0
+            .iter()
+            .map(|piece| match piece {
+                Piece::Words(words) => Ok(words.clone()),
+                Piece::Value(quantity) => quantity.text(look, right),
+            })
+            .collect()
     }
 }

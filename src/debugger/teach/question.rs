@@ -242,12 +242,15 @@ fn cells(decision: &Decision) -> Result<(Vec<String>, usize), LessonError> {
         return Err(LessonError::NoCell);
     }
     let place = |mode: Mode| MODES.iter().position(|m| *m == mode).unwrap_or(0);
-    let cell = |(column, mode): (usize, &Mode)| {
-        let [first, second] = TABLE_2[place(decision.before)][column];
-        let and = if second.is_empty() { "" } else { " and " };
-        format!("{first}{and}{second}: {}", names::mode(*mode))
-    };
-    let options = MODES.iter().enumerate().map(cell).collect();
+    let options = MODES
+        .iter()
+        .enumerate()
+        .map(|(column, mode)| {
+            let [first, second] = TABLE_2[place(decision.before)][column];
+            let and = if second.is_empty() { "" } else { " and " };
+            format!("{first}{and}{second}: {}", names::mode(*mode))
+        })
+        .collect();
     Ok((options, place(decision.next)))
 }
 
