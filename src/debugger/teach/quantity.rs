@@ -38,6 +38,8 @@ pub enum LessonQuantity {
     Key(&'static str),
 }
 
+use LessonQuantity::*;
+
 /// Quantities of a slave node.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NodeQuantity {
@@ -179,22 +181,22 @@ impl LessonQuantity {
         if let Some(nodal) = NodeQuantity::from_word(word) {
             return match rest {
                 "" => Err(LessonError::WhichNode(word.into())),
-                node => Ok(LessonQuantity::Of(nodal, action::exact(node, context)?)),
+                node => Ok(Of(nodal, action::exact(node, context)?)),
             };
         }
         if let Some(of) = RunQuantity::from_word(word) {
-            return Ok(LessonQuantity::Run(of, settings(rest)?));
+            return Ok(Run(of, settings(rest)?));
         }
         let whole = SolveQuantity::from_word(word);
         match (word, whole, rest) {
             ("key", _, action) => {
                 let entry = action::ACTIONS.iter().find(|entry| entry.name == action);
                 let key = entry.and_then(|entry| entry.keys.first());
-                key.map(|key| LessonQuantity::Key(key))
+                key.map(|key| Key(key))
                     .ok_or_else(|| LessonError::NoKey(action.into()))
             }
-            ("right", _, "") => Ok(LessonQuantity::Right),
-            (_, Some(whole), "") => Ok(LessonQuantity::Solve(whole)),
+            ("right", _, "") => Ok(Right),
+            (_, Some(whole), "") => Ok(Solve(whole)),
             (_, Some(_), _) => Err(LessonError::NotNodal(word.into())),
             _ => Err(unknown(word)),
         }
@@ -205,7 +207,7 @@ impl LessonQuantity {
     /// # Errors If it is not a number or not known.
     pub fn number(&self, look: &FrameValues) -> Result<f64, LessonError> {
         match self {
-            LessonQuantity::Of(nodal, slave) if nodal.is_frozen() => {
+            Of(nodal, slave) if nodal.is_frozen() => {
                 let of = look.interface(*slave)?;
                 Ok(match nodal {
                     NodeQuantity::FreeN => of.free[0],
@@ -215,11 +217,9 @@ impl LessonQuantity {
                     _ => of.compliance[0][1],
                 })
             }
-            LessonQuantity::Of(NodeQuantity::Ratio, slave) => {
-                Ok(look.frame.state.nodes[*slave].ratio)
-            }
-            LessonQuantity::Of(NodeQuantity::Leaves, slave) => look.leaves(*slave),
-            LessonQuantity::Of(nodal, slave) => {
+            Of(NodeQuantity::Ratio, slave) => Ok(look.frame.state.nodes[*slave].ratio),
+            Of(NodeQuantity::Leaves, slave) => look.leaves(*slave),
+            Of(nodal, slave) => {
                 let record = look.record(*slave)?;
                 let round_off = RoundOff::new(&look.model, &look.event()?.before);
                 match nodal {
@@ -232,29 +232,29 @@ impl LessonQuantity {
                     _ => Err(LessonError::NoNumber),
                 }
             }
-            LessonQuantity::Solve(whole) => whole_number(*whole, look),
-            LessonQuantity::Run(of, settings) => {
+            Solve(whole) => whole_number(*whole, look),
+            Run(of, settings) => {
                 let run = look.runs()?.of(settings)?;
                 match of {
                     RunQuantity::Error => run.error.ok_or(LessonError::NoError),
                     RunQuantity::Factorizations => Ok(run.factorizations as f64),
                 }
             }
-            LessonQuantity::Written(number) => Ok(*number),
-            LessonQuantity::Right | LessonQuantity::Key(_) => Err(LessonError::NoNumber),
+            Written(number) => Ok(*number),
+            Right | Key(_) => Err(LessonError::NoNumber),
         }
     }
 
     /// Whether the quantity is a number.
     pub fn is_number(&self) -> bool {
         match self {
-            LessonQuantity::Of(nodal, _) => !matches!(
+            Of(nodal, _) => !matches!(
                 nodal,
                 NodeQuantity::Mode | NodeQuantity::Next | NodeQuantity::Reason
             ),
-            LessonQuantity::Solve(whole) => *whole != SolveQuantity::Verdict,
-            LessonQuantity::Run(..) | LessonQuantity::Written(_) => true,
-            LessonQuantity::Right | LessonQuantity::Key(_) => false,
+            Solve(whole) => *whole != SolveQuantity::Verdict,
+            Run(..) | Written(_) => true,
+            Right | Key(_) => false,
         }
     }
 
@@ -262,15 +262,15 @@ impl LessonQuantity {
     /// Hints cannot contain it.
     fn looks_ahead(&self) -> bool {
         match self {
-            LessonQuantity::Right => true,
-            LessonQuantity::Of(of, _) => matches!(
+            Right => true,
+            Of(of, _) => matches!(
                 of,
                 NodeQuantity::Lag
                     | NodeQuantity::Leaves
                     | NodeQuantity::Next
                     | NodeQuantity::Reason
             ),
-            LessonQuantity::Solve(whole) => matches!(
+            Solve(whole) => matches!(
                 whole,
                 SolveQuantity::Answers
                     | SolveQuantity::Minors
@@ -278,27 +278,23 @@ impl LessonQuantity {
                     | SolveQuantity::Majors
                     | SolveQuantity::Verdict
             ),
-            LessonQuantity::Run(..) | LessonQuantity::Written(_) | LessonQuantity::Key(_) => false,
+            Run(..) | Written(_) | Key(_) => false,
         }
     }
 
     /// The quantity as text; `right` is the text of the right answer.
     fn text(&self, look: &FrameValues, right: &str) -> Result<String, LessonError> {
         match self {
-            LessonQuantity::Right => Ok(right.into()),
-            LessonQuantity::Key(key) => Ok((*key).into()),
-            LessonQuantity::Of(NodeQuantity::Mode, slave) => {
-                Ok(names::mode(look.before(*slave)).into())
-            }
-            LessonQuantity::Of(NodeQuantity::Next, slave) => {
-                Ok(names::mode(look.next(*slave)).into())
-            }
-            LessonQuantity::Of(NodeQuantity::Reason, slave) => {
+            Right => Ok(right.into()),
+            Key(key) => Ok((*key).into()),
+            Of(NodeQuantity::Mode, slave) => Ok(names::mode(look.before(*slave)).into()),
+            Of(NodeQuantity::Next, slave) => Ok(names::mode(look.next(*slave)).into()),
+            Of(NodeQuantity::Reason, slave) => {
                 let record = look.record(*slave)?;
                 Ok(report::reason(&record.decision, record.t_max != 0.0))
             }
-            LessonQuantity::Of(..) => self.number(look).map(sig4),
-            LessonQuantity::Solve(SolveQuantity::Verdict) => {
+            Of(..) => self.number(look).map(sig4),
+            Solve(SolveQuantity::Verdict) => {
                 let worst = look
                     .verdict()?
                     .broken()
@@ -308,9 +304,7 @@ impl LessonQuantity {
                     None => "all laws are satisfied".into(),
                 })
             }
-            LessonQuantity::Solve(_) | LessonQuantity::Run(..) | LessonQuantity::Written(_) => {
-                self.number(look).map(sig4)
-            }
+            Solve(_) | Run(..) | Written(_) => self.number(look).map(sig4),
         }
     }
 }
@@ -351,7 +345,7 @@ fn whole_number(whole: SolveQuantity, look: &FrameValues) -> Result<f64, LessonE
 /// # Errors As [`LessonQuantity::read`], and if the quantity is not a number.
 pub fn number(text: &str, context: &Context) -> Result<LessonQuantity, LessonError> {
     match text.trim().parse() {
-        Ok(number) => Ok(LessonQuantity::Written(number)),
+        Ok(number) => Ok(Written(number)),
         Err(_) => match LessonQuantity::read(text.trim(), context)? {
             quantity if quantity.is_number() => Ok(quantity),
             _ => Err(LessonError::NoNumber),

@@ -6,6 +6,7 @@ use super::reader::{MeshKind, Names, Reader};
 use super::source::{DeckLocation, Done, Fault, plain};
 use crate::bail;
 use crate::mesh::CellKind;
+use CellKind::*;
 
 /// Maximum number of members of all sets and surfaces together, and of loads on members of sets: more than a plane mesh needs,
 /// and few enough to fit in memory.
@@ -110,13 +111,13 @@ impl Reader {
     pub(super) fn elements(&mut self, card: &Card<'_>) -> Done {
         let kind = element_type(card, self.is_outline)?;
         let count = kind.cell.nodes();
-        if kind.cell == CellKind::Quad4 && kind.reduced {
+        if kind.cell == Quad4 && kind.reduced {
             self.deck.add_note(
                 card.place_of("TYPE"),
                 "CPE4R, CPS4R and CAX4R have one integration point; 5 % of full integration controls hourglass modes, which each \
                  code does differently, so bending of coarse meshes differs",
             );
-        } else if matches!(kind.cell, CellKind::Triangle3 | CellKind::Quad4) {
+        } else if matches!(kind.cell, Triangle3 | Quad4) {
             self.deck.add_note(
             card.place_of("TYPE"),
             "elements with 3 and 4 nodes are fully integrated plane elements; CalculiX expands them to \
@@ -389,12 +390,12 @@ pub(super) fn element_type(card: &Card<'_>, solids: bool) -> Done<ElementType> {
 /// The cell of a three-dimensional element type.
 fn solid(name: &str) -> Option<CellKind> {
     Some(match name {
-        "C3D4" => CellKind::Tetra4,
-        "C3D6" => CellKind::Wedge6,
-        "C3D8" | "C3D8R" | "C3D8I" => CellKind::Hexa8,
-        "C3D10" | "C3D10T" | "C3D10M" => CellKind::Tetra10,
-        "C3D15" => CellKind::Wedge15,
-        "C3D20" | "C3D20R" => CellKind::Hexa20,
+        "C3D4" => Tetra4,
+        "C3D6" => Wedge6,
+        "C3D8" | "C3D8R" | "C3D8I" => Hexa8,
+        "C3D10" | "C3D10T" | "C3D10M" => Tetra10,
+        "C3D15" => Wedge15,
+        "C3D20" | "C3D20R" => Hexa20,
         _ => return None,
     })
 }
@@ -403,12 +404,12 @@ fn kind_of(name: &str) -> Result<ElementType, String> {
     const RIGHT: &str = "supported are CPE, CPS and CAX with 3, 4, 4R, 6, 8 and 8R, and B21, B22, B31, B31R, B32, B32R";
     let plane = |family: Family, rest: &str| {
         let (cell, reduced) = match rest {
-            "3" => (CellKind::Triangle3, false),
-            "4" => (CellKind::Quad4, false),
-            "6" => (CellKind::Triangle6, false),
-            "8" => (CellKind::Quad8, false),
-            "8R" => (CellKind::Quad8, true),
-            "4R" => (CellKind::Quad4, true),
+            "3" => (Triangle3, false),
+            "4" => (Quad4, false),
+            "6" => (Triangle6, false),
+            "8" => (Quad8, false),
+            "8R" => (Quad8, true),
+            "4R" => (Quad4, true),
             _ => {
                 return Err(format!(
                     "elements of type {} are not supported; {RIGHT}",
@@ -430,8 +431,8 @@ fn kind_of(name: &str) -> Result<ElementType, String> {
         })
     };
     match name {
-        "B21" | "B31" | "B31R" => return beam(CellKind::Line2),
-        "B22" | "B32" | "B32R" => return beam(CellKind::Line3),
+        "B21" | "B31" | "B31R" => return beam(Line2),
+        "B22" | "B32" | "B32R" => return beam(Line3),
         _ => {}
     }
     let families = [
