@@ -7,6 +7,7 @@ use super::source::{DeckLocation, Done, Fault, plain};
 use crate::bail;
 use crate::mesh::CellKind;
 use CellKind::*;
+use MeshKind::*;
 
 /// Maximum number of members of all sets and surfaces together, and of loads on members of sets: more than a plane mesh needs,
 /// and few enough to fit in memory.
@@ -56,8 +57,8 @@ impl Names {
             );
         }
         let labels = match kind {
-            MeshKind::Nodes => &self.nodes,
-            MeshKind::Elements => &self.elements,
+            Nodes => &self.nodes,
+            Elements => &self.elements,
         };
         let within = labels
             .range(self.number(from)..=self.number(to))
@@ -102,7 +103,7 @@ impl Reader {
         }
         self.add(
             card,
-            MeshKind::Nodes,
+            Nodes,
             "NSET",
             (first..self.deck.nodes.len()).collect(),
         )
@@ -178,18 +179,18 @@ impl Reader {
         }
         self.add(
             card,
-            MeshKind::Elements,
+            Elements,
             "ELSET",
             (first..self.deck.elements.len()).collect(),
         )
     }
 
     pub(super) fn node_set(&mut self, card: &Card<'_>) -> Done {
-        self.set(card, MeshKind::Nodes, "NSET")
+        self.set(card, Nodes, "NSET")
     }
 
     pub(super) fn element_set(&mut self, card: &Card<'_>) -> Done {
-        self.set(card, MeshKind::Elements, "ELSET")
+        self.set(card, Elements, "ELSET")
     }
 
     fn set(&mut self, card: &Card<'_>, kind: MeshKind, parameter: &str) -> Done {
@@ -222,8 +223,8 @@ impl Reader {
     pub(super) fn members_of(&self, cell: &CardCell<'_>, kind: MeshKind) -> Done<Vec<usize>> {
         let word = kind.word();
         let (sets, all) = match kind {
-            MeshKind::Nodes => (&self.names.node_sets, &self.deck.node_sets),
-            MeshKind::Elements => (&self.names.element_sets, &self.deck.element_sets),
+            Nodes => (&self.names.node_sets, &self.deck.node_sets),
+            Elements => (&self.names.element_sets, &self.deck.element_sets),
         };
         let name = plain(cell.text);
         match self.names.labelled(&name, kind) {
@@ -244,8 +245,8 @@ impl Reader {
     /// Index of a set by name.
     pub(super) fn set_of(&self, name: &str, place: DeckLocation, kind: MeshKind) -> Done<usize> {
         let sets = match kind {
-            MeshKind::Nodes => &self.names.node_sets,
-            MeshKind::Elements => &self.names.element_sets,
+            Nodes => &self.names.node_sets,
+            Elements => &self.names.element_sets,
         };
         match sets.get(&self.names.name(name)) {
             Some(set) => Ok(*set),
@@ -289,8 +290,8 @@ impl Reader {
             );
         }
         let (sets, all) = match kind {
-            MeshKind::Nodes => (&mut self.names.node_sets, &mut self.deck.node_sets),
-            MeshKind::Elements => (&mut self.names.element_sets, &mut self.deck.element_sets),
+            Nodes => (&mut self.names.node_sets, &mut self.deck.node_sets),
+            Elements => (&mut self.names.element_sets, &mut self.deck.element_sets),
         };
         let set = *sets.entry(name.to_owned()).or_insert_with(|| {
             all.push(Set {
@@ -316,7 +317,7 @@ impl Reader {
                 let mut members = Vec::new();
                 for line in &card.lines {
                     if let Some(cell) = cells(*line).first() {
-                        members.extend(self.members_of(cell, MeshKind::Nodes)?);
+                        members.extend(self.members_of(cell, Nodes)?);
                         fits(&members, cell, "surface")?;
                     }
                 }
@@ -365,7 +366,7 @@ impl Reader {
                     "the side is missing; write the element and the side, e.g. \"12, S2\""
                 );
             };
-            for element in self.members_of(first, MeshKind::Elements)? {
+            for element in self.members_of(first, Elements)? {
                 sides.push((element, side_of(label, 'S', &self.deck.elements[element])?));
             }
             fits(&sides, first, "surface")?;
