@@ -40,134 +40,81 @@ pub enum LessonQuantity {
 
 use LessonQuantity::*;
 
-/// Quantities of a slave node.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum NodeQuantity {
-    /// Gap (length), negative for penetration.
-    Gap,
-    /// Normal force; compression is positive.
-    Fn,
-    /// Tangential force.
-    Ft,
-    /// The friction bound T_max, force.
-    TMax,
-    /// Slip, length.
-    Slip,
-    /// Factor by which the error of a lagged T_max changes in the next solve.
-    Lag,
-    /// Motion of S* relative to the node along n if all nodes were free, length.
-    FreeN,
-    /// The same along t.
-    FreeT,
-    /// Compliance: motion along n per F_n on the node, length per force.
-    Wnn,
-    /// Motion along n per F_t, and along t per F_n.
-    Wnt,
-    /// Motion along t per F_t.
-    Wtt,
-    /// ρ, the ratio of tangential to normal travel of a node that touches.
-    Ratio,
-    /// Load factor at which the node leaves its mode.
-    Leaves,
-    /// Mode of the shown iteration.
-    Mode,
-    /// Mode of the next iteration.
-    Next,
-    /// The cell of Table 2 that applied, in words.
-    Reason,
-}
-
-/// Quantities of the solve.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum SolveQuantity {
-    /// The load factor λ.
-    Load,
-    /// Size of the increment, as a load factor.
-    Increment,
-    /// Angle of friction, degrees.
-    Angle,
-    /// Coefficient of friction.
-    Tan,
-    /// Cohesion, force.
-    Cohesion,
-    /// Number of consistent states.
-    Answers,
-    /// Minor iterations until the increment ends.
-    Minors,
-    /// Period of the cycle.
-    Period,
-    /// Major iterations of this increment.
-    Majors,
-    /// The latest relative residual.
-    Residual,
-    /// Number of sliding slave nodes.
-    Sliding,
-    /// The judge's finding, in a sentence.
-    Verdict,
-}
-
-/// Quantities of a run in a chart.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum RunQuantity {
-    /// Relative error.
-    Error,
-    /// Number of factorizations.
-    Factorizations,
+stickslip_core::words! {
+    /// Quantities of a slave node.
+    pub enum NodeQuantity, ALL, word {
+        /// Gap (length), negative for penetration.
+        Gap "gap",
+        /// Normal force; compression is positive.
+        Fn "F_n",
+        /// Tangential force.
+        Ft "F_t",
+        /// The friction bound T_max, force.
+        TMax "T_max",
+        /// Slip, length.
+        Slip "slip",
+        /// Factor by which the error of a lagged T_max changes in the next solve.
+        Lag "lag",
+        /// Motion of S* relative to the node along n if all nodes were free, length.
+        FreeN "v_n",
+        /// The same along t.
+        FreeT "v_t",
+        /// Compliance: motion along n per F_n on the node, length per force.
+        Wnn "W_nn",
+        /// Motion along n per F_t, and along t per F_n.
+        Wnt "W_nt",
+        /// Motion along t per F_t.
+        Wtt "W_tt",
+        /// ρ, the ratio of tangential to normal travel of a node that touches.
+        Ratio "rho",
+        /// Load factor at which the node leaves its mode.
+        Leaves "leaves",
+        /// Mode of the shown iteration.
+        Mode "mode",
+        /// Mode of the next iteration.
+        Next "next",
+        /// The cell of Table 2 that applied, in words.
+        Reason "reason",
+    }
 }
 
 stickslip_core::words! {
-    NodeQuantity, ALL, word:
-    Gap "gap",
-    Fn "F_n",
-    Ft "F_t",
-    TMax "T_max",
-    Slip "slip",
-    Lag "lag",
-    FreeN "v_n",
-    FreeT "v_t",
-    Wnn "W_nn",
-    Wnt "W_nt",
-    Wtt "W_tt",
-    Ratio "rho",
-    Leaves "leaves",
-    Mode "mode",
-    Next "next",
-    Reason "reason",
+    /// Quantities of the solve.
+    pub enum SolveQuantity, ALL, word {
+        /// The load factor λ.
+        Load "load",
+        /// Size of the increment, as a load factor.
+        Increment "increment",
+        /// Angle of friction, degrees.
+        Angle "angle",
+        /// Coefficient of friction.
+        Tan "tan",
+        /// Cohesion, force.
+        Cohesion "cohesion",
+        /// Number of consistent states.
+        Answers "answers",
+        /// Minor iterations until the increment ends.
+        Minors "minors",
+        /// Period of the cycle.
+        Period "period",
+        /// Major iterations of this increment.
+        Majors "majors",
+        /// The latest relative residual.
+        Residual "residual",
+        /// Number of sliding slave nodes.
+        Sliding "sliding",
+        /// The judge's finding, in a sentence.
+        Verdict "verdict",
+    }
 }
 
 stickslip_core::words! {
-    RunQuantity, ALL, word:
-    Error "error",
-    Factorizations "factorizations",
-}
-
-stickslip_core::words! {
-    SolveQuantity, ALL, word:
-    Load "load",
-    Increment "increment",
-    Angle "angle",
-    Tan "tan",
-    Cohesion "cohesion",
-    Answers "answers",
-    Minors "minors",
-    Period "period",
-    Majors "majors",
-    Residual "residual",
-    Sliding "sliding",
-    Verdict "verdict",
-}
-
-impl NodeQuantity {
-    /// Whether it belongs to the frozen interface problem.
-    fn is_frozen(self) -> bool {
-        matches!(
-            self,
-            NodeQuantity::FreeN
-                | NodeQuantity::FreeT
-                | NodeQuantity::Wnn
-                | NodeQuantity::Wnt
-                | NodeQuantity::Wtt
-        )
+    /// Quantities of a run in a chart.
+    pub enum RunQuantity, ALL, word {
+        /// Relative error.
+        Error "error",
+        /// Number of factorizations.
+        Factorizations "factorizations",
     }
 }
 
@@ -207,31 +154,7 @@ impl LessonQuantity {
     /// # Errors If it is not a number or not known.
     pub fn number(&self, look: &FrameValues) -> Result<f64, LessonError> {
         match self {
-            Of(nodal, slave) if nodal.is_frozen() => {
-                let of = look.interface(*slave)?;
-                Ok(match nodal {
-                    NodeQuantity::FreeN => of.free[0],
-                    NodeQuantity::FreeT => of.free[1],
-                    NodeQuantity::Wnn => of.compliance[0][0],
-                    NodeQuantity::Wtt => of.compliance[1][1],
-                    _ => of.compliance[0][1],
-                })
-            }
-            Of(NodeQuantity::Ratio, slave) => Ok(look.frame.state.nodes[*slave].ratio),
-            Of(NodeQuantity::Leaves, slave) => look.leaves(*slave),
-            Of(nodal, slave) => {
-                let record = look.record(*slave)?;
-                let round_off = RoundOff::new(&look.model, &look.event()?.before);
-                match nodal {
-                    NodeQuantity::Gap => Ok(round_off.length(record.gap)),
-                    NodeQuantity::Fn => Ok(round_off.force(record.f_n)),
-                    NodeQuantity::Ft => Ok(round_off.force(record.f_t)),
-                    NodeQuantity::TMax => Ok(round_off.force(record.t_max)),
-                    NodeQuantity::Slip => Ok(round_off.length(record.slip)),
-                    NodeQuantity::Lag => look.lag(*slave),
-                    _ => Err(LessonError::NoNumber),
-                }
-            }
+            Of(nodal, slave) => nodal.number(*slave, look),
             Solve(whole) => whole_number(*whole, look),
             Run(of, settings) => {
                 let run = look.runs()?.of(settings)?;
@@ -293,7 +216,6 @@ impl LessonQuantity {
                 let record = look.record(*slave)?;
                 Ok(report::reason(&record.decision, record.t_max != 0.0))
             }
-            Of(..) => self.number(look).map(sig4),
             Solve(SolveQuantity::Verdict) => {
                 let worst = look
                     .verdict()?
@@ -304,7 +226,36 @@ impl LessonQuantity {
                     None => "all laws are satisfied".into(),
                 })
             }
-            Solve(_) | Run(..) | Written(_) => self.number(look).map(sig4),
+            Of(..) | Solve(_) | Run(..) | Written(_) => self.number(look).map(sig4),
+        }
+    }
+}
+
+impl NodeQuantity {
+    fn number(self, slave: usize, look: &FrameValues) -> Result<f64, LessonError> {
+        let frozen = || look.interface(slave);
+        let record = look.record(slave);
+        let round_off =
+            || -> Result<_, LessonError> { Ok(RoundOff::new(&look.model, &look.event()?.before)) };
+        let force = |force: f64| Ok(round_off()?.force(force));
+        let length = |length: f64| Ok(round_off()?.length(length));
+        match self {
+            NodeQuantity::FreeN => Ok(frozen()?.free[0]),
+            NodeQuantity::FreeT => Ok(frozen()?.free[1]),
+            NodeQuantity::Wnn => Ok(frozen()?.compliance[0][0]),
+            NodeQuantity::Wnt => Ok(frozen()?.compliance[0][1]),
+            NodeQuantity::Wtt => Ok(frozen()?.compliance[1][1]),
+            NodeQuantity::Ratio => Ok(look.frame.state.nodes[slave].ratio),
+            NodeQuantity::Leaves => look.leaves(slave),
+            NodeQuantity::Gap => length(record?.gap),
+            NodeQuantity::Fn => force(record?.f_n),
+            NodeQuantity::Ft => force(record?.f_t),
+            NodeQuantity::TMax => force(record?.t_max),
+            NodeQuantity::Slip => length(record?.slip),
+            NodeQuantity::Lag => look.lag(slave),
+            NodeQuantity::Mode | NodeQuantity::Next | NodeQuantity::Reason => {
+                Err(LessonError::NoNumber)
+            }
         }
     }
 }
