@@ -16,7 +16,7 @@ use stickslip_core::Strategy;
 use stickslip_debugger::teach;
 use stickslip_manual as manual;
 use stickslip_scene::builtin;
-use stickslip_scene::format::paths::{self, ListedScalar};
+use stickslip_scene::format::paths;
 use stickslip_scene::format::read;
 use stickslip_study::precision::Cost;
 use stickslip_study::{benchmarks, builtin as studies};

@@ -3,7 +3,7 @@
 use super::curves::{Axis, Curve, CurveChart, CurveEnd};
 use super::monitor_kind::{MonitorKind, kind};
 use super::origin;
-use super::plan::{Case, Plan};
+use super::plan::Plan;
 use super::read::{AxisQuantity, Study};
 use super::result::{CaseEnd, Run};
 use stickslip_core::words::counted;

@@ -6,7 +6,7 @@ use crate::history::branches;
 use crate::recorded::calculix::{self, RecordedRun};
 use crate::recorded::exchange::{Line, OpenedExchange};
 use crate::recorded::story::in_common;
-use crate::{PointKind, Recording, Strip};
+use crate::{PointKind, Recording};
 use stickslip_scene::Scene;
 
 impl Session {

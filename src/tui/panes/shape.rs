@@ -21,7 +21,7 @@ use ratatui::text::{Line, Span};
 use ratatui::widgets::Widget;
 use std::f64::consts::FRAC_PI_4;
 use stickslip_core::fem::lagrange;
-use stickslip_core::model::{BodyKind, Contact};
+use stickslip_core::model::BodyKind;
 use stickslip_core::plane::distance;
 use stickslip_core::{Model, PointDeformation, SurfaceElement};
 use stickslip_debugger::Examination;

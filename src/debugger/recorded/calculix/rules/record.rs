@@ -8,7 +8,7 @@ use super::supports::open_at_start;
 use std::collections::BTreeSet;
 use stickslip_core::RunFinding;
 use stickslip_exchange::calculix::cvg::Norms;
-use stickslip_exchange::calculix::files::{End, Iteration};
+use stickslip_exchange::calculix::files::End;
 use stickslip_scene::number::{shortest, sig4};
 use stickslip_scene::shown::first_of;
 
