@@ -113,11 +113,12 @@ fn axis(plan: &Plan, quantity: &AxisQuantity) -> Axis {
 
 /// Unit of a monitor; lengths and forces are in the scene's units.
 fn unit(plan: &Plan, monitor: &str) -> &'static str {
-    match plan.cases.iter().find_map(|case| {
+    let kind = plan.cases.iter().find_map(|case| {
         let model = case.model().ok()?;
         let found = model.monitors.iter().find(|own| own.name == monitor)?;
         Some(kind(&model, &found.of))
-    }) {
+    });
+    match kind {
         Some(MonitorKind::Length | MonitorKind::Drift) => " (length)",
         Some(MonitorKind::Rotation) => " (rad)",
         Some(MonitorKind::Force) => " (force)",

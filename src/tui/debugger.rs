@@ -412,10 +412,11 @@ impl Debugger {
             .session
             .as_ref()
             .filter(|session| !session.is_running());
-        if !idle.is_some_and(|session| {
+        let failed = |session: &Session| {
             let failed = matches!(session.frame().state.status, Status::Failed(_));
             failed && session.model().finished.is_none()
-        }) {
+        };
+        if !idle.is_some_and(failed) {
             return String::new();
         }
         let key = |action: &str| {

@@ -50,11 +50,11 @@ pub(super) fn spread(
             pairs.push(pair);
             continue;
         }
-        for side in sides.iter().filter(|side| {
-            side.nodes
-                .iter()
-                .all(|&node| pairs_of[node].contains(&pair))
-        }) {
+        let of_pair = sides.iter().filter(|side| {
+            let mut nodes = side.nodes.iter();
+            nodes.all(|&node| pairs_of[node].contains(&pair))
+        });
+        for side in of_pair {
             let borders = borders(side, surfaces, &slave.surfaces, &places);
             let ends = [side.nodes[0], side.nodes[side.nodes.len() - 1]];
             let [from, to] = ends.map(|node| names.nodes[node].name.clone());
