@@ -82,9 +82,8 @@ pub fn family_words<'a>(
                 let lines: Vec<String> = ["F_n", "F_t"]
                     .into_iter()
                     .zip(ranges)
-                    .filter_map(|(word, [low, high])| {
-                        (low < high).then(|| format!("{word} {} to {}", end(low), end(high)))
-                    })
+                    .filter(|(_, [low, high])| low < high)
+                    .map(|(word, [low, high])| format!("{word} {} to {}", end(low), end(high)))
                     .collect();
                 format!("{} {}", name(place), lines.join(", "))
             });

@@ -7,12 +7,11 @@ use crate::explain::judged;
 use crate::explain::jumped;
 use crate::explain::names::{self, mode, position_in, slave};
 use crate::explain::strain;
-use stickslip_core::step::arc_state::Change;
 use stickslip_core::step::event::SmallerStepReason;
 use stickslip_core::words::counted;
 use stickslip_core::{
-    ContactRecord, Decision, Event, Failure, Intervention, Model, MotionEvent, Outcome, Position,
-    Rule, Singular, State, TestedQuantity,
+    Decision, Event, Failure, Intervention, Model, MotionEvent, Outcome, Position, Rule, Singular,
+    State, TestedQuantity,
 };
 use stickslip_scene::number::{shortest, sig2, sig4, sig6};
 use stickslip_scene::shown::first_of;
