@@ -353,8 +353,11 @@ impl Attached {
 
     /// The tree node of the current state.
     fn place(&self) -> Result<u64, Fault> {
-        let known = |place: &u64| self.places.get(*place).is_some();
-        self.now.state.place().filter(known).ok_or(Fault::Unknown)
+        self.now
+            .state
+            .place()
+            .filter(|place| self.places.get(*place).is_some())
+            .ok_or(Fault::Unknown)
     }
 
     fn frame(&self) -> WireFrame<'_> {

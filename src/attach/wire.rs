@@ -145,14 +145,15 @@ pub fn state(model: &Model, state: &State, event: &Event, monitors: &[f64]) -> m
 
 /// Displacements of all nodes.
 fn displacements(model: &Model, state: &State) -> Vec<Components> {
-    let moved = |node: usize| {
-        let dof = |axis: usize| match model.dofs.count.get(node) {
-            Some(2..) => state.u.get(model.dofs.first[node] + axis).copied(),
-            _ => None,
-        };
-        [dof(0).unwrap_or(0.0), dof(1).unwrap_or(0.0)].into()
-    };
-    (0..model.nodes.len()).map(moved).collect()
+    (0..model.nodes.len())
+        .map(|node| {
+            let dof = |axis: usize| match model.dofs.count.get(node) {
+                Some(2..) => state.u.get(model.dofs.first[node] + axis).copied(),
+                _ => None,
+            };
+            [dof(0).unwrap_or(0.0), dof(1).unwrap_or(0.0)].into()
+        })
+        .collect()
 }
 
 fn ended(event: &Event) -> (EndedLevel, Option<message::NormsMessage>, Option<f64>) {

@@ -16,7 +16,7 @@ use stickslip_core::Strategy;
 use stickslip_debugger::teach;
 use stickslip_manual as manual;
 use stickslip_scene::builtin;
-use stickslip_scene::format::paths::{self, ListedScalar};
+use stickslip_scene::format::paths;
 use stickslip_scene::format::read;
 use stickslip_study::precision::Cost;
 use stickslip_study::{benchmarks, builtin as studies};
@@ -197,10 +197,13 @@ fn screens() -> Vec<Named> {
 }
 
 fn with_studies() -> Vec<Named> {
-    let named = |name| (name, String::new());
     let studies = studies::list().iter().map(|study| study.name);
     let mut all = scenes();
-    all.extend(studies.chain([benchmarks::BUILTIN]).map(named));
+    all.extend(
+        studies
+            .chain([benchmarks::BUILTIN])
+            .map(|name| (name, String::new())),
+    );
     all
 }
 
@@ -232,11 +235,12 @@ fn of(begun: &OsStr, all: Vec<Named>) -> Vec<CompletionCandidate> {
     let found = all
         .into_iter()
         .filter(|(name, _)| name.starts_with(&*begun));
-    let candidate = |(name, about): Named| {
-        let about = (!about.is_empty()).then(|| about.into());
-        CompletionCandidate::new(name).help(about)
-    };
-    found.map(candidate).collect()
+    found
+        .map(|(name, about)| {
+            let about = (!about.is_empty()).then(|| about.into());
+            CompletionCandidate::new(name).help(about)
+        })
+        .collect()
 }
 
 fn plain(begun: &OsStr, words: impl IntoIterator<Item = &'static str>) -> Vec<CompletionCandidate> {
@@ -292,11 +296,15 @@ fn of_scene(words: &[OsString]) -> Option<Vec<SettablePath>> {
         };
         Some(paths::list(&read::spec(name, &text).ok()?))
     })?;
-    let settable = |own: ListedScalar| SettablePath {
-        path: own.path,
-        words: own.words,
-    };
-    Some(listed.into_iter().map(settable).collect())
+    Some(
+        listed
+            .into_iter()
+            .map(|own| SettablePath {
+                path: own.path,
+                words: own.words,
+            })
+            .collect(),
+    )
 }
 
 /// The paths that all scenes have.

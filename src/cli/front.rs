@@ -46,9 +46,11 @@ pub fn screenshots(
     let mono = tui::theme::Theme::mono();
     let mut debugger =
         tui::after_keys(screen.scene, screen.keys, size, mono).map_err(Error::Usage)?;
-    let draw = |&colours| {
-        debugger.app.theme = tui::theme::Theme::new(colours);
-        tui::screenshot::png(&debugger, size, colours).map_err(Error::usage)
-    };
-    colours.iter().map(draw).collect()
+    colours
+        .iter()
+        .map(|&colours| {
+            debugger.app.theme = tui::theme::Theme::new(colours);
+            tui::screenshot::png(&debugger, size, colours).map_err(Error::usage)
+        })
+        .collect()
 }

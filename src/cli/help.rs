@@ -124,14 +124,16 @@ fn show(page: &Page) -> Result<Exit, Error> {
     };
     let styled = terminal && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty());
     let lines = render::render(page.text(), width);
-    let line = |line: &render::Line| {
-        if styled {
-            line.ansi() + "\n"
-        } else {
-            line.plain() + "\n"
-        }
-    };
-    let text: String = lines.iter().map(line).collect();
+    let text: String = lines
+        .iter()
+        .map(|line| {
+            if styled {
+                line.ansi() + "\n"
+            } else {
+                line.plain() + "\n"
+            }
+        })
+        .collect();
     if terminal && paged(&text) {
         return Ok(Exit::Good);
     }

@@ -95,14 +95,16 @@ fn write_hand_in(to: &Path, force: bool) -> Result<Exit, Error> {
 
 /// Prints the table of a class, lessons in teaching order. Files that cannot be read are named and left out.
 fn collect(files: &[PathBuf]) -> Result<Exit, Error> {
-    let read = |file: &PathBuf| {
-        if file.exists() {
-            Progress::read(file).map_err(Error::usage)
-        } else {
-            Err(usage!("{}: no such file", file.display()))
-        }
-    };
-    let (class, unread): (Vec<_>, Vec<_>) = files.iter().map(read).partition(Result::is_ok);
+    let (class, unread): (Vec<_>, Vec<_>) = files
+        .iter()
+        .map(|file| {
+            if file.exists() {
+                Progress::read(file).map_err(Error::usage)
+            } else {
+                Err(usage!("{}: no such file", file.display()))
+            }
+        })
+        .partition(Result::is_ok);
     for error in unread.iter().filter_map(|result| result.as_ref().err()) {
         notify(&error.to_string());
     }
@@ -138,15 +140,18 @@ fn list() -> Result<String, Error> {
         .max()
         .unwrap_or(0);
     let column = lessons.iter().map(|lesson| done(lesson).width()).max();
-    let line = |(index, lesson): (usize, &Lesson)| {
-        let mut line = format!("{:>2}  {}  ", index + 1, shown::padded(&lesson.name, width));
-        // Without any progress there is no column for it.
-        if let Some(column @ 1..) = column {
-            line += &(shown::padded(&done(lesson), column) + "  ");
-        }
-        format!("{line}{}\n", lesson.title)
-    };
-    Ok(lessons.iter().enumerate().map(line).collect())
+    Ok(lessons
+        .iter()
+        .enumerate()
+        .map(|(index, lesson)| {
+            let mut line = format!("{:>2}  {}  ", index + 1, shown::padded(&lesson.name, width));
+            // Without any progress there is no column for it.
+            if let Some(column @ 1..) = column {
+                line += &(shown::padded(&done(lesson), column) + "  ");
+            }
+            format!("{line}{}\n", lesson.title)
+        })
+        .collect())
 }
 
 fn check(lesson: Lesson) -> Result<String, Error> {
@@ -206,9 +211,12 @@ fn printed(mark: &str, text: &str) -> String {
 fn indented(mark: &str, text: &str) -> String {
     let indent = " ".repeat(mark.width());
     let lines = shown::wrap(text, SHEET_WIDTH - mark.width());
-    let line = |(k, line): (usize, &String)| match k {
-        0 => format!("{mark}{line}\n"),
-        _ => format!("{indent}{line}\n"),
-    };
-    lines.iter().enumerate().map(line).collect()
+    lines
+        .iter()
+        .enumerate()
+        .map(|(k, line)| match k {
+            0 => format!("{mark}{line}\n"),
+            _ => format!("{indent}{line}\n"),
+        })
+        .collect()
 }

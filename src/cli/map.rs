@@ -83,12 +83,11 @@ fn count(text: &str) -> Result<usize, NoValue> {
         .parse::<u64>()
         .ok()
         .filter(|n| (1..=MOST_CASES).contains(n));
-    let wrong = || {
+    count.map(|n| n as usize).ok_or_else(|| {
         NoValue::new(format!(
             "expected a whole number from 1 to {MOST_CASES}; for more, run several seeds"
         ))
-    };
-    count.map(|n| n as usize).ok_or_else(wrong)
+    })
 }
 
 pub fn main(args: &Args) -> Result<Exit, Error> {
@@ -205,12 +204,11 @@ fn map_lines(map: &Map) -> Vec<String> {
         table[0].extend(panel.columns.iter().cloned());
         for (name, cells) in panel.rows.iter().zip(&panel.cells) {
             let mut row = vec![name.clone()];
-            let label = |k: &usize| {
+            row.extend(cells.iter().map(|k| {
                 map.cells[*k]
                     .as_ref()
                     .map_or("?".to_owned(), MapCell::label)
-            };
-            row.extend(cells.iter().map(label));
+            }));
             // Scenes with individual settings may have fewer columns.
             row.resize(panel.columns.len() + 1, String::new());
             table.push(row);
@@ -237,14 +235,16 @@ fn variants(args: &Args) -> Result<Vec<Variant>, Error> {
         _ => strategies(args)?,
     };
     vary.extend(args.over.iter().cloned());
-    let named = |varied: Vec<(String, String)>| {
-        let values: Vec<&str> = varied.iter().map(|(_, value)| value.as_str()).collect();
-        Variant {
-            name: values.join(" "),
-            settings: [args.set.set.clone(), varied].concat(),
-        }
-    };
-    Ok(product(&vary).into_iter().map(named).collect())
+    Ok(product(&vary)
+        .into_iter()
+        .map(|varied| {
+            let values: Vec<&str> = varied.iter().map(|(_, value)| value.as_str()).collect();
+            Variant {
+                name: values.join(" "),
+                settings: [args.set.set.clone(), varied].concat(),
+            }
+        })
+        .collect())
 }
 
 /// All strategies on random problems.

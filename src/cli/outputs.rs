@@ -47,8 +47,8 @@ impl OutputArgs {
 
     /// Number of parallel runs.
     pub fn jobs(&self) -> NonZeroUsize {
-        let cores = || std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
-        self.jobs.unwrap_or_else(cores)
+        self.jobs
+            .unwrap_or_else(|| std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN))
     }
 
     /// A progress bar on a terminal for the whole sweep; `unit` names what is counted.

@@ -50,12 +50,14 @@ enum ReplayResult {
     Unreadable(String),
 }
 
+use ReplayResult::*;
+
 impl ReplayResult {
     fn exit(&self) -> Exit {
         match self {
-            ReplayResult::Compared { differences, .. } if differences.is_empty() => Exit::Good,
-            ReplayResult::Compared { .. } | ReplayResult::NotRepeatable(..) => Exit::Differ,
-            ReplayResult::Unreadable(_) => Exit::Bad,
+            Compared { differences, .. } if differences.is_empty() => Exit::Good,
+            Compared { .. } | NotRepeatable(..) => Exit::Differ,
+            Unreadable(_) => Exit::Bad,
         }
     }
 }
@@ -122,7 +124,7 @@ fn one(file: &Path, args: &Args) -> Result<ReplayResult, Error> {
         Ok(recorded) => Box::new(recorded),
         Err(error) => {
             let why = scene_instead(file).unwrap_or_else(|| error.to_string());
-            return Ok(ReplayResult::Unreadable(why));
+            return Ok(Unreadable(why));
         }
     };
     let replayed = if solver.is_named() {
@@ -132,15 +134,13 @@ fn one(file: &Path, args: &Args) -> Result<ReplayResult, Error> {
         recorded.replay()
     };
     Ok(match replayed {
-        Ok(found) => ReplayResult::Compared {
+        Ok(found) => Compared {
             minors: found.steps,
             differences: compare_within(&recorded, &found, args.tolerance),
             recorded,
         },
-        Err(error @ SnapshotError::Replay(_)) => {
-            ReplayResult::NotRepeatable(recorded, error.to_string())
-        }
-        Err(error) => ReplayResult::Unreadable(format!("{}: {error}", file.display())),
+        Err(error @ SnapshotError::Replay(_)) => NotRepeatable(recorded, error.to_string()),
+        Err(error) => Unreadable(format!("{}: {error}", file.display())),
     })
 }
 
@@ -148,12 +148,12 @@ fn one(file: &Path, args: &Args) -> Result<ReplayResult, Error> {
 fn print(file: &Path, replayed: &ReplayResult, says: bool) -> Result<(), Error> {
     let file = file.display();
     let text = match replayed {
-        ReplayResult::Unreadable(why) => {
+        Unreadable(why) => {
             notify(why);
             return Ok(());
         }
-        ReplayResult::NotRepeatable(_, why) => format!("{file}: {why}\n"),
-        ReplayResult::Compared {
+        NotRepeatable(_, why) => format!("{file}: {why}\n"),
+        Compared {
             minors,
             differences,
             ..
@@ -163,7 +163,7 @@ fn print(file: &Path, replayed: &ReplayResult, says: bool) -> Result<(), Error> 
                 counted(*minors, "minor iteration")
             )
         }
-        ReplayResult::Compared { differences, .. } => {
+        Compared { differences, .. } => {
             format!("{file}: differs (left: recorded, right: recomputed)\n{differences}")
         }
     };
@@ -176,7 +176,7 @@ fn print(file: &Path, replayed: &ReplayResult, says: bool) -> Result<(), Error> 
 /// The result as data.
 fn record(file: &Path, replayed: &ReplayResult, seconds: f64) -> ReplayedRecord {
     let (outcome, message, snapshot) = match replayed {
-        ReplayResult::Compared {
+        Compared {
             recorded,
             differences,
             ..
@@ -187,11 +187,11 @@ fn record(file: &Path, replayed: &ReplayResult, seconds: f64) -> ReplayedRecord 
                 ("differs", None, Some(recorded))
             }
         }
-        ReplayResult::NotRepeatable(recorded, why) => ("not-repeatable", Some(why), Some(recorded)),
-        ReplayResult::Unreadable(why) => ("unreadable", Some(why), None),
+        NotRepeatable(recorded, why) => ("not-repeatable", Some(why), Some(recorded)),
+        Unreadable(why) => ("unreadable", Some(why), None),
     };
     let (minors, rows) = match replayed {
-        ReplayResult::Compared {
+        Compared {
             minors,
             differences,
             ..
@@ -229,9 +229,9 @@ fn difference(row: &Difference) -> DifferenceRecord {
 /// The result as that of a test.
 fn result(replayed: &ReplayResult) -> TestResult {
     match replayed {
-        ReplayResult::Unreadable(why) => TestResult::Error(why.clone()),
-        ReplayResult::NotRepeatable(_, why) => TestResult::Failed(why.clone(), String::new()),
-        ReplayResult::Compared { differences, .. } => match differences.rows.len() {
+        Unreadable(why) => TestResult::Error(why.clone()),
+        NotRepeatable(_, why) => TestResult::Failed(why.clone(), String::new()),
+        Compared { differences, .. } => match differences.rows.len() {
             0 => TestResult::Passed,
             n => TestResult::Failed(counted(n, "difference"), differences.to_string()),
         },

@@ -90,8 +90,10 @@ fn or_all<'a, T>(given: &'a [T], all: &'a [T]) -> &'a [T] {
 
 /// The main screens with these names, or all.
 fn named(names: &[String]) -> Result<Vec<&'static MainScreen<'static>>, Error> {
-    let unknown = |name: &&String| !MAIN_SCREENS.iter().any(|own| own.name == **name);
-    if let Some(name) = names.iter().find(unknown) {
+    if let Some(name) = names
+        .iter()
+        .find(|name| !MAIN_SCREENS.iter().any(|own| own.name == **name))
+    {
         return Err(usage!(
             "no main screen named '{name}' (`stickslip screens` lists them; for a scene, add --keys)"
         ));
@@ -102,12 +104,14 @@ fn named(names: &[String]) -> Result<Vec<&'static MainScreen<'static>>, Error> {
 }
 
 fn listed() -> String {
-    let line = |screen: &MainScreen<'_>| {
-        let scene = screen.scene.unwrap_or("(chooser)");
-        let line = format!("{:<16}  {scene:<28}  {}", screen.name, screen.keys);
-        line.trim_end().to_owned() + "\n"
-    };
-    MAIN_SCREENS.iter().map(line).collect()
+    MAIN_SCREENS
+        .iter()
+        .map(|screen| {
+            let scene = screen.scene.unwrap_or("(chooser)");
+            let line = format!("{:<16}  {scene:<28}  {}", screen.name, screen.keys);
+            line.trim_end().to_owned() + "\n"
+        })
+        .collect()
 }
 
 /// Reads `120x40`.

@@ -410,24 +410,31 @@ impl<'a> Tally<'a> {
 
     /// The slave nodes in the last accepted increment.
     pub fn slaves(&self) -> Vec<SlaveRecord> {
-        let slave = |(slave, found): (usize, &ContactRecord)| SlaveRecord {
-            node: names::slave(&self.scene.model, slave).to_owned(),
-            mode: names::mode(found.decision.before),
-            gap: found.gap,
-            f_n: found.f_n,
-            f_t: found.f_t,
-        };
-        self.slaves.iter().enumerate().map(slave).collect()
+        self.slaves
+            .iter()
+            .enumerate()
+            .map(|(slave, found)| SlaveRecord {
+                node: names::slave(&self.scene.model, slave).to_owned(),
+                mode: names::mode(found.decision.before),
+                gap: found.gap,
+                f_n: found.f_n,
+                f_t: found.f_t,
+            })
+            .collect()
     }
 
     /// The increments that were accepted with a fallback.
     pub fn fallbacks(&self) -> Vec<FallbackRecord> {
-        let of = |(by, loads): (&Fallback, &Vec<f64>)| {
-            let fallback = by.words();
-            let record = move |&load: &f64| FallbackRecord { fallback, load };
-            loads.iter().map(record).collect::<Vec<_>>()
-        };
-        self.found.iter().flat_map(of).collect()
+        self.found
+            .iter()
+            .flat_map(|(by, loads)| {
+                let fallback = by.words();
+                loads
+                    .iter()
+                    .map(move |&load| FallbackRecord { fallback, load })
+                    .collect::<Vec<_>>()
+            })
+            .collect()
     }
 }
 
@@ -444,11 +451,13 @@ impl Stretches {
 
     /// The ranges.
     pub fn records(&self) -> Vec<StabilityRecord> {
-        let record = |&(load, stability): &(f64, Stability)| StabilityRecord {
-            load,
-            stability: stability.to_string(),
-        };
-        self.0.iter().map(record).collect()
+        self.0
+            .iter()
+            .map(|&(load, stability)| StabilityRecord {
+                load,
+                stability: stability.to_string(),
+            })
+            .collect()
     }
 
     /// A one-line summary; `None` if no increment was accepted.
@@ -456,10 +465,12 @@ impl Stretches {
         if self.0.is_empty() {
             return None;
         }
-        let stretch = |(load, stability): &(f64, Stability)| {
-            format!("{stability} from load {}", shortest(*load))
-        };
-        let first: Vec<String> = self.0.iter().take(MOST_STRETCHES).map(stretch).collect();
+        let first: Vec<String> = self
+            .0
+            .iter()
+            .take(MOST_STRETCHES)
+            .map(|(load, stability)| format!("{stability} from load {}", shortest(*load)))
+            .collect();
         let more = match self.0.len().saturating_sub(MOST_STRETCHES) {
             0 => String::new(),
             more => format!(", and {}; --csv lists all", counted(more, "more change")),

@@ -203,9 +203,10 @@ impl ModelBuilder {
             length if length > 0.0 => length,
             _ => all(),
         };
-        match model.length > 0.0 {
-            true => Ok(model),
-            false => Err(ModelError::NoSize),
+        if model.length > 0.0 {
+            Ok(model)
+        } else {
+            Err(ModelError::NoSize)
         }
     }
 }
@@ -250,8 +251,9 @@ fn check(model: &Model) -> Result<(), ModelError> {
         }
     }
     let moves = model.path.len() > 1 && model.path.iter().all(|load| load.is_finite());
-    match moves && model.increment > 0.0 && model.increment.is_finite() {
-        true => Ok(()),
-        false => Err(ModelError::History),
+    if moves && model.increment > 0.0 && model.increment.is_finite() {
+        Ok(())
+    } else {
+        Err(ModelError::History)
     }
 }

@@ -30,8 +30,9 @@ pub fn unit(v: [f64; 2]) -> Option<[f64; 2]> {
 
 /// The largest magnitude of some numbers; 0 for none.
 pub fn max_abs(values: impl IntoIterator<Item: Borrow<f64>>) -> f64 {
-    let values = values.into_iter();
-    values.fold(0.0, |most: f64, x| most.max(x.borrow().abs()))
+    values
+        .into_iter()
+        .fold(0.0, |most: f64, x| most.max(x.borrow().abs()))
 }
 
 /// The distance of two points.

@@ -67,9 +67,10 @@ pub fn noun_for<N: PartialEq + From<u8>>(count: &N, noun: &str) -> String {
 
 /// How often: "once", "2 times".
 pub fn times<N: std::fmt::Display + PartialEq + From<u8>>(count: N) -> String {
-    match count == N::from(1) {
-        true => "once".to_owned(),
-        false => format!("{count} times"),
+    if count == N::from(1) {
+        "once".to_owned()
+    } else {
+        format!("{count} times")
     }
 }
 

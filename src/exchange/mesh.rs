@@ -34,6 +34,8 @@ pub enum CellKind {
     Hexa20,
 }
 
+use CellKind::*;
+
 /// Sides of a triangle, from corner to corner.
 const TRIANGLE: [[usize; 2]; 3] = [[0, 1], [1, 2], [2, 0]];
 /// Sides of a quadrilateral.
@@ -72,30 +74,25 @@ impl CellKind {
     /// Number of nodes.
     pub fn nodes(self) -> usize {
         match self {
-            CellKind::Point => 1,
-            CellKind::Line2 => 2,
-            CellKind::Line3 | CellKind::Triangle3 => 3,
-            CellKind::Quad4 | CellKind::Tetra4 => 4,
-            CellKind::Triangle6 | CellKind::Wedge6 => 6,
-            CellKind::Quad8 | CellKind::Hexa8 => 8,
-            CellKind::Quad9 => 9,
-            CellKind::Tetra10 => 10,
-            CellKind::Wedge15 => 15,
-            CellKind::Hexa20 => 20,
+            Point => 1,
+            Line2 => 2,
+            Line3 | Triangle3 => 3,
+            Quad4 | Tetra4 => 4,
+            Triangle6 | Wedge6 => 6,
+            Quad8 | Hexa8 => 8,
+            Quad9 => 9,
+            Tetra10 => 10,
+            Wedge15 => 15,
+            Hexa20 => 20,
         }
     }
 
     /// 0 for points, 1 for lines, 2 for areas, 3 for solids.
     pub fn dimension(self) -> u8 {
         match self {
-            CellKind::Point => 0,
-            CellKind::Line2 | CellKind::Line3 => 1,
-            CellKind::Tetra4
-            | CellKind::Tetra10
-            | CellKind::Wedge6
-            | CellKind::Wedge15
-            | CellKind::Hexa8
-            | CellKind::Hexa20 => 3,
+            Point => 0,
+            Line2 | Line3 => 1,
+            Tetra4 | Tetra10 | Wedge6 | Wedge15 | Hexa8 | Hexa20 => 3,
             _ => 2,
         }
     }
@@ -103,42 +100,42 @@ impl CellKind {
     /// Number of corners.
     pub fn corners(self) -> usize {
         match self {
-            CellKind::Point => 1,
-            CellKind::Line2 | CellKind::Line3 => 2,
-            CellKind::Triangle3 | CellKind::Triangle6 => 3,
-            CellKind::Quad4 | CellKind::Quad8 | CellKind::Quad9 => 4,
-            CellKind::Tetra4 | CellKind::Tetra10 => 4,
-            CellKind::Wedge6 | CellKind::Wedge15 => 6,
-            CellKind::Hexa8 | CellKind::Hexa20 => 8,
+            Point => 1,
+            Line2 | Line3 => 2,
+            Triangle3 | Triangle6 => 3,
+            Quad4 | Quad8 | Quad9 => 4,
+            Tetra4 | Tetra10 => 4,
+            Wedge6 | Wedge15 => 6,
+            Hexa8 | Hexa20 => 8,
         }
     }
 
     /// Edges of an area or a solid as pairs of corners; the midside node of edge k follows the corners at place k.
     pub fn edges(self) -> &'static [[usize; 2]] {
         match self {
-            CellKind::Point | CellKind::Line2 | CellKind::Line3 => &[],
-            CellKind::Triangle3 | CellKind::Triangle6 => &TRIANGLE,
-            CellKind::Quad4 | CellKind::Quad8 | CellKind::Quad9 => &QUAD,
-            CellKind::Tetra4 | CellKind::Tetra10 => &TETRA,
-            CellKind::Wedge6 | CellKind::Wedge15 => &WEDGE,
-            CellKind::Hexa8 | CellKind::Hexa20 => &HEXA,
+            Point | Line2 | Line3 => &[],
+            Triangle3 | Triangle6 => &TRIANGLE,
+            Quad4 | Quad8 | Quad9 => &QUAD,
+            Tetra4 | Tetra10 => &TETRA,
+            Wedge6 | Wedge15 => &WEDGE,
+            Hexa8 | Hexa20 => &HEXA,
         }
     }
 
     /// Faces of a solid, or sides of an area, by their corners, in the order S1, S2, ... of CalculiX and Abaqus.
     pub fn sides(self) -> Vec<&'static [usize]> {
         match self {
-            CellKind::Tetra4 | CellKind::Tetra10 => {
+            Tetra4 | Tetra10 => {
                 vec![&[0, 1, 2], &[0, 3, 1], &[1, 3, 2], &[2, 3, 0]]
             }
-            CellKind::Wedge6 | CellKind::Wedge15 => vec![
+            Wedge6 | Wedge15 => vec![
                 &[0, 1, 2],
                 &[3, 4, 5],
                 &[0, 1, 4, 3],
                 &[1, 2, 5, 4],
                 &[2, 0, 3, 5],
             ],
-            CellKind::Hexa8 | CellKind::Hexa20 => vec![
+            Hexa8 | Hexa20 => vec![
                 &[0, 1, 2, 3],
                 &[4, 7, 6, 5],
                 &[0, 4, 5, 1],

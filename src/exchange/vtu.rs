@@ -4,6 +4,7 @@
 //! exact (VTK file formats, "XML file formats", uncompressed binary data).
 
 use crate::mesh::{Cell, CellKind};
+use CellKind::*;
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 use std::fmt::Write;
@@ -49,20 +50,20 @@ pub struct Grid {
 /// VTK's number for a kind of cell.
 pub fn cell_type(kind: CellKind) -> u8 {
     match kind {
-        CellKind::Point => 1,
-        CellKind::Line2 => 3,
-        CellKind::Line3 => 21,
-        CellKind::Triangle3 => 5,
-        CellKind::Triangle6 => 22,
-        CellKind::Quad4 => 9,
-        CellKind::Quad8 => 23,
-        CellKind::Quad9 => 28,
-        CellKind::Tetra4 => 10,
-        CellKind::Tetra10 => 24,
-        CellKind::Wedge6 => 13,
-        CellKind::Wedge15 => 26,
-        CellKind::Hexa8 => 12,
-        CellKind::Hexa20 => 25,
+        Point => 1,
+        Line2 => 3,
+        Line3 => 21,
+        Triangle3 => 5,
+        Triangle6 => 22,
+        Quad4 => 9,
+        Quad8 => 23,
+        Quad9 => 28,
+        Tetra4 => 10,
+        Tetra10 => 24,
+        Wedge6 => 13,
+        Wedge15 => 26,
+        Hexa8 => 12,
+        Hexa20 => 25,
     }
 }
 

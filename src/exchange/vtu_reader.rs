@@ -2,25 +2,14 @@
 
 use crate::mesh::{Cell, CellKind};
 use crate::vtu::cell_type;
+use CellKind::*;
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 
 /// The kinds of cells that are read.
 const KINDS: [CellKind; 14] = [
-    CellKind::Point,
-    CellKind::Line2,
-    CellKind::Line3,
-    CellKind::Triangle3,
-    CellKind::Triangle6,
-    CellKind::Quad4,
-    CellKind::Quad8,
-    CellKind::Quad9,
-    CellKind::Tetra4,
-    CellKind::Tetra10,
-    CellKind::Wedge6,
-    CellKind::Wedge15,
-    CellKind::Hexa8,
-    CellKind::Hexa20,
+    Point, Line2, Line3, Triangle3, Triangle6, Quad4, Quad8, Quad9, Tetra4, Tetra10, Wedge6,
+    Wedge15, Hexa8, Hexa20,
 ];
 
 /// Reads the points and cells of a grid.

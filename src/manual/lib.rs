@@ -104,8 +104,10 @@ pub fn page(topic: &str) -> Result<&'static Page, NoPage> {
 /// The topics with their subjects, one per line.
 pub fn contents() -> String {
     let width = PAGES.iter().map(|page| page.topic.len()).max().unwrap_or(0);
-    let line = |page: &Page| format!("  {:<width$}  {}\n", page.topic, page.about);
-    PAGES.iter().map(line).collect()
+    PAGES
+        .iter()
+        .map(|page| format!("  {:<width$}  {}\n", page.topic, page.about))
+        .collect()
 }
 
 /// A line that matches a search.

@@ -21,6 +21,8 @@ pub enum Style {
     Code,
 }
 
+use Style::*;
+
 /// A line of a page.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Line {
@@ -53,9 +55,7 @@ impl Line {
 
     /// Whether it is a heading.
     pub fn is_heading(&self) -> bool {
-        self.pieces
-            .iter()
-            .any(|(style, _)| *style == Style::Heading)
+        self.pieces.iter().any(|(style, _)| *style == Heading)
     }
 
     fn is_blank(&self) -> bool {
@@ -64,12 +64,14 @@ impl Line {
 
     /// The text with escape sequences for bold and underline.
     pub fn ansi(&self) -> String {
-        let piece = |(style, text): &(Style, String)| match style {
-            Style::Plain => text.clone(),
-            Style::Heading => format!("\u{1b}[1;4m{text}\u{1b}[0m"),
-            Style::Strong | Style::Code => format!("\u{1b}[1m{text}\u{1b}[0m"),
-        };
-        self.pieces.iter().map(piece).collect()
+        self.pieces
+            .iter()
+            .map(|(style, text)| match style {
+                Plain => text.clone(),
+                Heading => format!("\u{1b}[1;4m{text}\u{1b}[0m"),
+                Strong | Code => format!("\u{1b}[1m{text}\u{1b}[0m"),
+            })
+            .collect()
     }
 }
 
@@ -132,7 +134,7 @@ fn heading(line: &str) -> Option<Line> {
             .into_iter()
             .map(|(_, text)| text)
             .collect();
-        Line::new(Style::Heading, words)
+        Line::new(Heading, words)
     })
 }
 
@@ -140,14 +142,15 @@ fn heading(line: &str) -> Option<Line> {
 fn block(code: &[&str], width: usize) -> Vec<Line> {
     let widest = code.iter().map(|line| line.width()).max().unwrap_or(0);
     let indent = INDENT.min(width.saturating_sub(widest));
-    let line = |line: &&str| {
-        if line.is_empty() {
-            Line::default()
-        } else {
-            Line::new(Style::Plain, format!("{:indent$}{line}", ""))
-        }
-    };
-    code.iter().map(line).collect()
+    code.iter()
+        .map(|line| {
+            if line.is_empty() {
+                Line::default()
+            } else {
+                Line::new(Plain, format!("{:indent$}{line}", ""))
+            }
+        })
+        .collect()
 }
 
 /// The marker of a list item and its text; a plain paragraph has an empty marker.
@@ -182,7 +185,7 @@ fn paragraph(lead: &str, text: &str, width: usize) -> Vec<Line> {
             0 => lead.to_owned(),
             _ => " ".repeat(margin),
         };
-        let mut pieces = vec![(Style::Plain, before)];
+        let mut pieces = vec![(Plain, before)];
         pieces.retain(|(_, text)| !text.is_empty());
         pieces.extend(line.pieces);
         Line { pieces }
@@ -197,27 +200,25 @@ fn inline(text: &str) -> Vec<(Style, String)> {
     let mut rest = text;
     while let Some(first) = rest.chars().next() {
         let found = match first {
-            '`' => between(rest, "`", "`").map(|(inner, after)| (Style::Code, inner, after)),
+            '`' => between(rest, "`", "`").map(|(inner, after)| (Code, inner, after)),
             // A star after a letter, as in S*, opens nothing.
             '*' if plain.ends_with(char::is_alphanumeric) => None,
             '*' => between(rest, "**", "**")
-                .map(|(inner, after)| (Style::Strong, inner, after))
-                .or_else(|| {
-                    between(rest, "*", "*").map(|(inner, after)| (Style::Plain, inner, after))
-                }),
+                .map(|(inner, after)| (Strong, inner, after))
+                .or_else(|| between(rest, "*", "*").map(|(inner, after)| (Plain, inner, after))),
             '[' => between(rest, "[", "](").and_then(|(inner, after)| {
                 let (_, after) = after.split_once(')')?;
-                Some((Style::Plain, inner, after))
+                Some((Plain, inner, after))
             }),
             '<' => rest
                 .strip_prefix("<!--")
                 .and_then(|comment| comment.split_once("-->"))
-                .map(|(_, after)| (Style::Plain, "", after)),
+                .map(|(_, after)| (Plain, "", after)),
             _ => None,
         };
         match found {
             Some((style, inner, after)) => {
-                pieces.push((Style::Plain, std::mem::take(&mut plain)));
+                pieces.push((Plain, std::mem::take(&mut plain)));
                 pieces.push((style, inner.to_owned()));
                 rest = after;
             }
@@ -227,7 +228,7 @@ fn inline(text: &str) -> Vec<(Style, String)> {
             }
         }
     }
-    pieces.push((Style::Plain, plain));
+    pieces.push((Plain, plain));
     pieces.retain(|(_, text)| !text.is_empty());
     pieces
 }
@@ -255,7 +256,7 @@ fn wrap(pieces: &[(Style, String)], width: usize) -> Vec<Line> {
         }
         let Some(line) = lines.last_mut() else { return };
         if used > 0 {
-            push(line, Style::Plain, " ");
+            push(line, Plain, " ");
             used += 1;
         }
         for (style, text) in word.drain(..) {
@@ -331,7 +332,7 @@ fn table(rows: &[&str], width: usize) -> Vec<Line> {
                 if k == 0 && header {
                     cell.pieces
                         .iter_mut()
-                        .for_each(|(style, _)| *style = Style::Strong);
+                        .for_each(|(style, _)| *style = Strong);
                 }
                 for (style, text) in cell.pieces {
                     push(&mut line, style, &text);
@@ -339,7 +340,7 @@ fn table(rows: &[&str], width: usize) -> Vec<Line> {
                 if column + 1 < columns {
                     push(
                         &mut line,
-                        Style::Plain,
+                        Plain,
                         &" ".repeat(wide.saturating_sub(used) + APART),
                     );
                 }
@@ -348,7 +349,7 @@ fn table(rows: &[&str], width: usize) -> Vec<Line> {
         }
         if k == 0 && header {
             let rules: Vec<String> = widths.iter().map(|wide| "─".repeat(*wide)).collect();
-            lines.push(Line::new(Style::Plain, rules.join(&" ".repeat(APART))));
+            lines.push(Line::new(Plain, rules.join(&" ".repeat(APART))));
         }
     }
     lines
@@ -379,9 +380,8 @@ fn longest_word(cell: &[(Style, String)]) -> usize {
 fn share(wanted: &[usize], least: &[usize], room: usize) -> Vec<usize> {
     let mut widths = wanted.to_vec();
     while widths.iter().sum::<usize>() > room {
-        let shrinks = |column: &usize| widths[*column] > least[*column];
         let Some(widest) = (0..widths.len())
-            .filter(shrinks)
+            .filter(|column| widths[*column] > least[*column])
             .max_by_key(|column| widths[*column])
         else {
             break;

@@ -93,12 +93,13 @@ impl Search {
         if count == 0 || go == SearchMove::Nowhere || self.sought.is_empty() {
             return None;
         }
-        let at = |k: usize| match go {
-            SearchMove::Back => (from + 2 * count - 1 - k) % count,
-            SearchMove::Next => (from + 1 + k) % count,
-            _ => (from + k) % count,
-        };
-        let found = (0..count).map(at).find(|&line| self.holds(&lines[line]));
+        let found = (0..count)
+            .map(|k| match go {
+                SearchMove::Back => (from + 2 * count - 1 - k) % count,
+                SearchMove::Next => (from + 1 + k) % count,
+                _ => (from + k) % count,
+            })
+            .find(|&line| self.holds(&lines[line]));
         self.missed = found.is_none();
         found
     }

@@ -79,17 +79,16 @@ pub fn regular(path: &Path) -> Result<(), FileError> {
 pub fn stem(scene: &str) -> String {
     const MOST: usize = 64;
     let stem = Path::new(scene).file_stem().unwrap_or_default();
-    let plain = |c: char| {
-        if c.is_alphanumeric() || "-_.".contains(c) {
-            c
-        } else {
-            '_'
-        }
-    };
     stem.to_string_lossy()
         .chars()
         .take(MOST)
-        .map(plain)
+        .map(|c| {
+            if c.is_alphanumeric() || "-_.".contains(c) {
+                c
+            } else {
+                '_'
+            }
+        })
         .collect()
 }
 

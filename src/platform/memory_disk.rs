@@ -367,8 +367,10 @@ pub fn read_dir(
 ) -> io::Result<impl Iterator<Item = io::Result<DirEntry>>> {
     let folder = plain(folder.as_ref());
     let files = disk().files.keys().cloned().collect::<Vec<_>>();
-    let own = move |file: &PathBuf| file.parent() == Some(&folder);
-    Ok(files.into_iter().filter(own).map(|file| Ok(DirEntry(file))))
+    Ok(files
+        .into_iter()
+        .filter(move |file| file.parent() == Some(&folder))
+        .map(|file| Ok(DirEntry(file))))
 }
 
 /// Does nothing: a folder exists with its first file.

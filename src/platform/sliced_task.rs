@@ -110,8 +110,10 @@ pub fn turn() -> bool {
 pub fn is_slice_over() -> bool {
     let steps = SLICE_STEPS.get() + 1;
     SLICE_STEPS.set(steps);
-    let late = |start: Instant| start.elapsed() >= SLICE;
-    steps >= STEPS || SLICE_START.get().is_some_and(late)
+    steps >= STEPS
+        || SLICE_START
+            .get()
+            .is_some_and(|start| start.elapsed() >= SLICE)
 }
 
 /// The next message of another task, which runs until it sends one.

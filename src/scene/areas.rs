@@ -52,8 +52,11 @@ pub(super) fn tributary(
     }
     let mut alone: Vec<Option<f64>> = vec![None; nodes.len()];
     for side in &sides {
-        let lonely = |node: &&usize| pair_of[**node].is_some() && areas[**node].is_none();
-        for &node in side.nodes.iter().filter(lonely) {
+        for &node in side
+            .nodes
+            .iter()
+            .filter(|node| pair_of[**node].is_some() && areas[**node].is_none())
+        {
             *alone[node].get_or_insert(0.0) += 0.5 * shares(side, nodes).iter().sum::<f64>();
         }
     }
@@ -113,18 +116,24 @@ fn materials(solid: &Solid) -> Vec<Option<&Elastic>> {
             .for_each(|&node| around.entry(node).or_default().push(k));
     }
     let behind = |edge: &Vec<usize>| {
-        let all = |k: &&usize| {
-            edge.iter()
-                .all(|node| solid.elements[**k].nodes.contains(node))
-        };
-        around.get(&edge[0])?.iter().find(all).copied()
+        around
+            .get(&edge[0])?
+            .iter()
+            .find(|k| {
+                edge.iter()
+                    .all(|node| solid.elements[**k].nodes.contains(node))
+            })
+            .copied()
     };
-    let material = |edge| {
-        solid
-            .materials
-            .get(solid.elements.get(behind(edge)?)?.material)
-    };
-    solid.edges.iter().map(material).collect()
+    solid
+        .edges
+        .iter()
+        .map(|edge| {
+            solid
+                .materials
+                .get(solid.elements.get(behind(edge)?)?.material)
+        })
+        .collect()
 }
 
 /// The area of each node of a side. Lagrange polynomials of high order have negative integrals; in that case each node gets the
@@ -134,16 +143,19 @@ fn shares(side: &AreaSide<'_>, nodes: &[Node]) -> Vec<f64> {
     let by_shape = integrals(side, nodes, -1.0, 1.0);
     let whole: f64 = by_shape.iter().sum();
     if by_shape.iter().all(|share| *share >= -NONE * whole) {
-        let rounded = |share: f64| if share <= NONE * whole { 0.0 } else { share };
-        return by_shape.into_iter().map(rounded).collect();
+        return by_shape
+            .into_iter()
+            .map(|share| if share <= NONE * whole { 0.0 } else { share })
+            .collect();
     }
     let half = 1.0 / (count as f64 - 1.0);
     let place = |k: usize| -1.0 + 2.0 * half * k as f64;
-    let nearest = |k: usize| {
-        let (from, to) = ((place(k) - half).max(-1.0), (place(k) + half).min(1.0));
-        integrals(side, nodes, from, to).iter().sum()
-    };
-    (0..count).map(nearest).collect()
+    (0..count)
+        .map(|k| {
+            let (from, to) = ((place(k) - half).max(-1.0), (place(k) + half).min(1.0));
+            integrals(side, nodes, from, to).iter().sum()
+        })
+        .collect()
 }
 
 /// ∫ N_i w |dx/dξ| dξ over a part of a side.

@@ -135,8 +135,13 @@ pub(super) fn compile(spec: &Spec, text: &str) -> Result<(Model, Names), Fault> 
         ..Model::from_contacts(&shown::line(&scene.title), nodes, surfaces, contacts)
     };
     if scene.dimension == 3 {
-        let z = |node: &message::NodeMessage| node.at.map_or(0.0, |at| at.in_space()[2]);
-        model.raise(scene.nodes.iter().map(z).collect());
+        model.raise(
+            scene
+                .nodes
+                .iter()
+                .map(|node| node.at.map_or(0.0, |at| at.in_space()[2]))
+                .collect(),
+        );
     }
     if !model.length.is_finite() {
         return refused("nodes: they are too far apart");

@@ -147,13 +147,12 @@ impl Grid {
         };
         let triangle = |corners: [usize; 3]| {
             let corners = corners.map(|k| AROUND[k]);
-            let middle = |k: usize| {
-                let ((a, b), (c, d)) = (corners[k], corners[(k + 1) % 3]);
-                ((a + c) / 2, (b + d) / 2)
-            };
             corners
                 .into_iter()
-                .chain((0..3).map(middle))
+                .chain((0..3).map(|k| {
+                    let ((a, b), (c, d)) = (corners[k], corners[(k + 1) % 3]);
+                    ((a + c) / 2, (b + d) / 2)
+                }))
                 .take(self.kind.nodes())
                 .map(at)
                 .collect()
@@ -440,14 +439,16 @@ fn chain_side(
 /// Deviations from the chord at all stations; zero at the corners.
 fn deviations(ends: (Point, Point), stations: &[f64], at: impl Fn(f64) -> Point) -> Vec<Point> {
     let inside = |s: f64| s > 0.0 && s < 1.0;
-    let one = |&s: &f64| {
-        if inside(s) {
-            deviation(ends, s, at(s))
-        } else {
-            (0.0, 0.0)
-        }
-    };
-    stations.iter().map(one).collect()
+    stations
+        .iter()
+        .map(|&s| {
+            if inside(s) {
+                deviation(ends, s, at(s))
+            } else {
+                (0.0, 0.0)
+            }
+        })
+        .collect()
 }
 
 /// Rejects a mesh with a folded or nearly folded element.

@@ -61,8 +61,10 @@ pub fn words(scene: &Scene) -> Vec<String> {
 /// Surfaces whose kinks may make nodes with a compliance hop.
 fn kinked(model: &Model) -> Option<String> {
     let touched = |k: usize| {
-        let gives = |c: &Contact| c.bond.give() != [0.0; 2] && c.surfaces.contains(&k);
-        model.contacts.iter().any(gives)
+        model
+            .contacts
+            .iter()
+            .any(|c| c.bond.give() != [0.0; 2] && c.surfaces.contains(&k))
     };
     let kinks = |(k, surface): &(usize, &Surface)| {
         !surface.rigid && surface.smooth.is_empty() && surface.elements.len() > 1 && touched(*k)

@@ -65,9 +65,14 @@ pub(super) fn face(pieces: &[usize], bodies: &[Body], pairs: &[usize], slaves: &
             .collect();
         own.sort_unstable();
         let pair = pair_of.get(&slave.node);
-        let slides = |edge: &&&Vec<usize>| edge.iter().all(|node| pair_of.get(node) == pair);
         // The sides of the slave surface, or all sides of the node if it is on none of them.
-        let on_side = outline(slave.node, edges.iter().filter(slides).copied());
+        let on_side = outline(
+            slave.node,
+            edges
+                .iter()
+                .filter(|edge| edge.iter().all(|node| pair_of.get(node) == pair))
+                .copied(),
+        );
         let outline = match slave.weights.as_slice() {
             [(first, _), .., (last, _)] => Some([*first, *last]),
             _ => on_side.or_else(|| outline(slave.node, edges.iter().copied())),

@@ -40,14 +40,16 @@ fn stands(
     contacts: &[Contact],
 ) -> Vec<Option<(SurfacePoint, f64)>> {
     let places: Vec<[f64; 2]> = nodes.iter().map(|node| node.at).collect();
-    let stand = |contact: &Contact| {
-        let at = places[contact.node];
-        let mut room = [0; MOST_SURFACES];
-        let on = faced(contact, surfaces, &places, &mut room);
-        let spot = project(at, surfaces, on, &places, None)?;
-        Some((spot, projection_at(surfaces, spot, &places, at).gap))
-    };
-    contacts.iter().map(stand).collect()
+    contacts
+        .iter()
+        .map(|contact| {
+            let at = places[contact.node];
+            let mut room = [0; MOST_SURFACES];
+            let on = faced(contact, surfaces, &places, &mut room);
+            let spot = project(at, surfaces, on, &places, None)?;
+            Some((spot, projection_at(surfaces, spot, &places, at).gap))
+        })
+        .collect()
 }
 
 /// The initial gaps of each surface that has slave nodes above it; empty in space.
@@ -257,11 +259,10 @@ fn unheld(model: &Model) -> Vec<String> {
         at_contact[node] = true;
     }
     let touches = |body: &Body| body.nodes.iter().any(|&node| at_contact[node]);
-    let mesh = |body: &&Body| !matches!(body.kind, BodyKind::Linear(_));
     model
         .bodies
         .iter()
-        .filter(mesh)
+        .filter(|body| !matches!(body.kind, BodyKind::Linear(_)))
         .filter(|body| !body.nodes.iter().any(|&node| held(node)))
         .filter(|body| !joined(body) && !touches(body))
         .map(|body| {
@@ -292,10 +293,11 @@ fn overlapping(model: &Model) -> Vec<String> {
             .filter(|(b, (_, other))| *b != a && outline.meets(other));
         let own = LazyCell::new(|| body.nodes.iter().copied().collect::<HashSet<usize>>());
         for (_, (other, _)) in others {
-            let deep = |node: &&usize| {
-                outline.contains(model.nodes[**node].at, near) && !own.contains(node)
-            };
-            if let Some(&node) = other.kind.lines().iter().flatten().find(deep) {
+            if let Some(&node) =
+                other.kind.lines().iter().flatten().find(|node| {
+                    outline.contains(model.nodes[**node].at, near) && !own.contains(node)
+                })
+            {
                 all.push(format!(
                     "bodies {} and {} overlap: {} of the second lies inside the first",
                     body.name, other.name, model.nodes[node].name
@@ -340,19 +342,27 @@ impl Outline {
     /// Whether a point lies inside by more than `near` from each side: a ray from it crosses the outline an odd number of times.
     fn contains(&self, at: [f64; 2], near: f64) -> bool {
         let inside_box = (0..2).all(|k| at[k] - self.low[k] > near && self.high[k] - at[k] > near);
-        let crosses = |&&[a, b]: &&[[f64; 2]; 2]| {
-            let crossing = |y: f64| a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]);
-            (a[1] > at[1]) != (b[1] > at[1]) && at[0] < crossing(at[1])
-        };
         inside_box
-            && self.sides.iter().filter(crosses).count() % 2 == 1
+            && self
+                .sides
+                .iter()
+                .filter(|&&[a, b]| {
+                    let crossing = |y: f64| a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]);
+                    (a[1] > at[1]) != (b[1] > at[1]) && at[0] < crossing(at[1])
+                })
+                .count()
+                % 2
+                == 1
             && !(self.sides.iter()).any(|[a, b]| distance_to_segment(at, *a, *b) <= near)
     }
 }
 
 fn some(model: &Model, slaves: &[usize]) -> String {
-    let name = |&slave: &usize| model.nodes[model.contacts[slave].node].name.as_str();
-    let names: Vec<&str> = slaves.iter().take(MOST).map(name).collect();
+    let names: Vec<&str> = slaves
+        .iter()
+        .take(MOST)
+        .map(|&slave| model.nodes[model.contacts[slave].node].name.as_str())
+        .collect();
     let more = if slaves.len() > MOST { ", …" } else { "" };
     names.join(", ") + more
 }

@@ -66,11 +66,14 @@ fn check_distances(
 /// Whether the tangent of a Lagrange curve nearly vanishes, or turns by more than a right angle within a small step.
 fn folds(slopes: &[Vec<f64>], points: &[[f64; 2]]) -> bool {
     const SMALLEST: f64 = 1e-3;
-    let tangent = |slopes: &Vec<f64>| {
-        let add = |sum: [f64; 2], (s, p): (&f64, &[f64; 2])| [sum[0] + s * p[0], sum[1] + s * p[1]];
-        slopes.iter().zip(points).fold([0.0, 0.0], add)
-    };
-    let tangents: Vec<[f64; 2]> = slopes.iter().map(tangent).collect();
+    let tangents: Vec<[f64; 2]> = slopes
+        .iter()
+        .map(|slopes| {
+            let add =
+                |sum: [f64; 2], (s, p): (&f64, &[f64; 2])| [sum[0] + s * p[0], sum[1] + s * p[1]];
+            slopes.iter().zip(points).fold([0.0, 0.0], add)
+        })
+        .collect();
     let norm = |t: &[f64; 2]| t[0].hypot(t[1]);
     let largest = tangents.iter().map(norm).fold(0.0, f64::max);
     let still = tangents.iter().any(|t| norm(t) <= SMALLEST * largest);
@@ -114,15 +117,18 @@ impl Folds {
         } else {
             25
         });
-        let slopes = |(r, s): (f64, f64)| {
-            let (xi, eta) = if kind.is_triangle() {
-                (r, s)
-            } else {
-                (2.0 * r - 1.0, 2.0 * s - 1.0)
-            };
-            continuum::formulation(kind).shape(xi, eta).1
-        };
-        Folds(places.map(slopes).collect())
+        Folds(
+            places
+                .map(|(r, s)| {
+                    let (xi, eta) = if kind.is_triangle() {
+                        (r, s)
+                    } else {
+                        (2.0 * r - 1.0, 2.0 * s - 1.0)
+                    };
+                    continuum::formulation(kind).shape(xi, eta).1
+                })
+                .collect(),
+        )
     }
 
     /// Whether the Jacobian of an element is below a thousandth of its maximum at one of the points, that is, not clearly

@@ -114,14 +114,17 @@ pub(crate) fn element_nodes(path: &Path, total: usize, setting: Option<f64>) -> 
 pub fn node_id_of(name: &str, most: usize) -> String {
     let letters: Vec<char> = name.chars().take(most).collect();
     let is_letter = |k: Option<usize>| k.and_then(|k| letters.get(k)).is_some_and(|c| *c != '.');
-    let usable = |(k, c): (usize, &char)| match c {
-        // Dots are valid between other characters.
-        '.' if is_letter(k.checked_sub(1)) && is_letter(Some(k + 1)) => '.',
-        '_' => '_',
-        c if c.is_alphanumeric() => *c,
-        _ => '-',
-    };
-    letters.iter().enumerate().map(usable).collect()
+    letters
+        .iter()
+        .enumerate()
+        .map(|(k, c)| match c {
+            // Dots are valid between other characters.
+            '.' if is_letter(k.checked_sub(1)) && is_letter(Some(k + 1)) => '.',
+            '_' => '_',
+            c if c.is_alphanumeric() => *c,
+            _ => '-',
+        })
+        .collect()
 }
 
 /// Rejects ids of single nodes as [`id`] does, but allows dots between other characters, as in the node names of a chain.

@@ -32,14 +32,13 @@ pub fn insert(scene: &mut Scene) -> Result<(), String> {
         return Ok(());
     };
     let mesh = read(&name).map_err(|why| format!("mesh: {why}"))?;
-    let named = |(k, at): (usize, &[f64; 3])| NodeMessage {
+    let nodes = mesh.points.iter().enumerate().map(|(k, at)| NodeMessage {
         name: mesh.labels.get(k).map_or_else(String::new, u64::to_string),
         at: Some(match scene.dimension {
             3 => (*at).into(),
             _ => [at[0], at[1]].into(),
         }),
-    };
-    let nodes = mesh.points.iter().enumerate().map(named);
+    });
     scene.nodes = nodes.chain(scene.nodes.drain(..)).collect();
     let drawn = match scene.dimension {
         3 => &mut scene.faces,
@@ -47,10 +46,12 @@ pub fn insert(scene: &mut Scene) -> Result<(), String> {
     };
     drawn.extend(sides(&mesh.cells, scene.dimension == 3));
     for surface in &mut scene.surfaces {
-        let is_it = |(name, _): &&(String, _)| name.eq_ignore_ascii_case(&surface.name);
         if surface.nodes.is_empty()
             && surface.faces.is_empty()
-            && let Some((_, faces)) = mesh.surfaces.iter().find(is_it)
+            && let Some((_, faces)) = mesh
+                .surfaces
+                .iter()
+                .find(|(name, _)| name.eq_ignore_ascii_case(&surface.name))
         {
             surface.faces.clone_from(faces);
         }

@@ -122,17 +122,20 @@ const MOST_CELL: usize = 200;
 
 /// Lines of a table: the first `first` columns and the last one are left-aligned, the others right-aligned.
 pub fn aligned<R: AsRef<[String]>>(table: &[R], first: usize) -> Vec<String> {
-    let harmless = |row: &R| {
-        row.as_ref()
-            .iter()
-            .map(|cell| cut(cell, MOST_CELL))
-            .collect()
-    };
-    let table: Vec<Vec<String>> = table.iter().map(harmless).collect();
+    let table: Vec<Vec<String>> = table
+        .iter()
+        .map(|row| {
+            row.as_ref()
+                .iter()
+                .map(|cell| cut(cell, MOST_CELL))
+                .collect()
+        })
+        .collect();
     let columns = table.first().map_or(0, Vec::len);
     let is_left = |k: usize| k < first || k + 1 == columns;
-    let width = |k: usize| table.iter().map(|row| row[k].width()).max().unwrap_or(0);
-    let widths: Vec<usize> = (0..columns).map(width).collect();
+    let widths: Vec<usize> = (0..columns)
+        .map(|k| table.iter().map(|row| row[k].width()).max().unwrap_or(0))
+        .collect();
     let cell = |(k, text): (usize, &String)| {
         if is_left(k) {
             padded(text, widths[k])
@@ -140,11 +143,13 @@ pub fn aligned<R: AsRef<[String]>>(table: &[R], first: usize) -> Vec<String> {
             padded_before(text, widths[k])
         }
     };
-    let line = |row: &Vec<String>| {
-        let cells: Vec<String> = row.iter().enumerate().map(cell).collect();
-        cells.join("  ").trim_end().to_owned()
-    };
-    table.iter().map(line).collect()
+    table
+        .iter()
+        .map(|row| {
+            let cells: Vec<String> = row.iter().enumerate().map(cell).collect();
+            cells.join("  ").trim_end().to_owned()
+        })
+        .collect()
 }
 
 fn escaped(text: &str, harmful: impl Fn(char) -> bool) -> Cow<'_, str> {

@@ -193,10 +193,9 @@ impl Benchmarks {
         let mut posed: Vec<(&Benchmark, Scene)> = Vec::new();
         let mut of = Vec::with_capacity(self.list.len());
         for benchmark in &self.list {
-            let same = |(other, _): &(&Benchmark, Scene)| {
+            let place = match posed.iter().position(|(other, _)| {
                 (&other.scene, &other.set) == (&benchmark.scene, &benchmark.set)
-            };
-            let place = match posed.iter().position(same) {
+            }) {
                 Some(place) => place,
                 None => {
                     posed.push((benchmark, Scene::open(&benchmark.scene, &benchmark.set)?));
@@ -300,10 +299,10 @@ impl Benchmark {
     fn row<'a>(&self, run: &'a Run) -> Option<&'a Row> {
         match self.at {
             None => (run.end == CaseEnd::Finished).then(|| run.last()),
-            Some(at) => {
-                let near = |row: &&Row| (row.load - at).abs() <= NEAR * at.abs().max(1.0);
-                run.rows.iter().find(near)
-            }
+            Some(at) => run
+                .rows
+                .iter()
+                .find(|row| (row.load - at).abs() <= NEAR * at.abs().max(1.0)),
         }
     }
 

@@ -220,8 +220,8 @@ fn table(chart: &Chart, path: &[f64]) -> Result<Option<Reference>, PrecisionErro
         Truth::Table(file) => Ok(Some(Reference::open(file, path)?)),
         Truth::Builtin => {
             let name = chart.scene.strip_suffix(".ron").unwrap_or(&chart.scene);
-            let none = || format!("there is no built-in reference for {name}");
-            let table = Reference::builtin(name, path).ok_or_else(none);
+            let table = Reference::builtin(name, path)
+                .ok_or_else(|| format!("there is no built-in reference for {name}"));
             Ok(Some(table.map_err(PrecisionError::Reference)??))
         }
         Truth::Run(_) | Truth::Finest | Truth::Richardson => Ok(None),
@@ -249,11 +249,10 @@ fn fixed(listed: &[f64], path: &[f64], table: Option<&Reference>) -> Vec<(usize,
                 .collect(),
             None => vec![0.5 * (from + to)],
         };
-        let inside = |load: &f64| {
+        loads.retain(|load| {
             let ends = is_same(path, *load, from) || is_same(path, *load, to);
             !ends && (from.min(to)..from.max(to)).contains(load)
-        };
-        loads.retain(inside);
+        });
         loads.sort_by(|a, b| (a - from).abs().total_cmp(&(b - from).abs()));
         let every = loads.len().div_ceil(MOST_FIXED).max(1);
         let last = loads.len();

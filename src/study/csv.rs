@@ -134,8 +134,10 @@ pub fn field(text: &str) -> String {
 
 /// Comment lines before a table, with its origin.
 pub fn comments<'a>(lines: impl IntoIterator<Item = &'a String>) -> String {
-    let comment = |line: &'a String| format!("# {}\n", shown::line(line));
-    lines.into_iter().map(comment).collect()
+    lines
+        .into_iter()
+        .map(|line| format!("# {}\n", shown::line(line)))
+        .collect()
 }
 
 /// A table to be read: CSV with `#` lines as comments and a header. Spaces around fields are ignored.

@@ -78,8 +78,11 @@ impl CurveChart {
     /// # Errors
     /// If the font cannot be read.
     pub fn sheet(&self) -> Result<Sheet, PlotError> {
-        let is_told = |c: &Curve| !c.label.is_empty() || c.end != CurveEnd::Whole;
-        let named = if self.curves.iter().any(is_told) {
+        let named = if self
+            .curves
+            .iter()
+            .any(|c| !c.label.is_empty() || c.end != CurveEnd::Whole)
+        {
             &self.curves[..self.curves.len().min(MOST_ENTRIES)]
         } else {
             &[]

@@ -3,7 +3,7 @@
 use super::curves::{Axis, Curve, CurveChart, CurveEnd};
 use super::monitor_kind::{MonitorKind, kind};
 use super::origin;
-use super::plan::{Case, Plan};
+use super::plan::Plan;
 use super::read::{AxisQuantity, Study};
 use super::result::{CaseEnd, Run};
 use stickslip_core::words::counted;
@@ -80,10 +80,14 @@ pub fn name(plan: &Plan, case: usize) -> String {
 
 /// The last step of each path if those are unique, otherwise the whole paths.
 pub fn short_names(paths: &[String]) -> Vec<String> {
-    let last = |path: &String| path.rsplit('.').next().unwrap_or(path).to_owned();
-    let short: Vec<String> = paths.iter().map(last).collect();
-    let unique = |name: &String| short.iter().filter(|other| *other == name).count() == 1;
-    if short.iter().all(unique) {
+    let short: Vec<String> = paths
+        .iter()
+        .map(|path| path.rsplit('.').next().unwrap_or(path).to_owned())
+        .collect();
+    if short
+        .iter()
+        .all(|name| short.iter().filter(|other| *other == name).count() == 1)
+    {
         short
     } else {
         paths.to_vec()
@@ -109,12 +113,12 @@ fn axis(plan: &Plan, quantity: &AxisQuantity) -> Axis {
 
 /// Unit of a monitor; lengths and forces are in the scene's units.
 fn unit(plan: &Plan, monitor: &str) -> &'static str {
-    let of = |case: &Case| {
+    let kind = plan.cases.iter().find_map(|case| {
         let model = case.model().ok()?;
         let found = model.monitors.iter().find(|own| own.name == monitor)?;
         Some(kind(&model, &found.of))
-    };
-    match plan.cases.iter().find_map(of) {
+    });
+    match kind {
         Some(MonitorKind::Length | MonitorKind::Drift) => " (length)",
         Some(MonitorKind::Rotation) => " (rad)",
         Some(MonitorKind::Force) => " (force)",

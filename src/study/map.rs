@@ -403,18 +403,20 @@ impl Map {
 
 /// The reference among some cases.
 fn reference(plan: &Plan, members: &[usize], ended: &[Option<MapRun>]) -> Option<usize> {
-    let sound = |k: &usize| {
-        ended[*k]
-            .as_ref()
-            .is_some_and(|e| e.failed.is_none() && e.unsettled == 0)
-    };
-    let rank = |k: &usize| {
-        let case = &plan.cases[*k];
-        let strategy = case.value("settings.strategy");
-        let other = strategy.is_some_and(|strategy| strategy != DEFAULT_STRATEGY);
-        (std::cmp::Reverse(case.increments), other, *k)
-    };
-    members.iter().copied().filter(sound).min_by_key(rank)
+    members
+        .iter()
+        .copied()
+        .filter(|k| {
+            ended[*k]
+                .as_ref()
+                .is_some_and(|e| e.failed.is_none() && e.unsettled == 0)
+        })
+        .min_by_key(|k| {
+            let case = &plan.cases[*k];
+            let strategy = case.value("settings.strategy");
+            let other = strategy.is_some_and(|strategy| strategy != DEFAULT_STRATEGY);
+            (std::cmp::Reverse(case.increments), other, *k)
+        })
 }
 
 fn title(plan: &Plan) -> String {

@@ -22,10 +22,12 @@ pub enum MonitorKind {
     Drift,
 }
 
+use MonitorKind::*;
+
 impl MonitorKind {
     /// Whether runs are compared by it.
     pub fn is_compared(self) -> bool {
-        !matches!(self, MonitorKind::Drift | MonitorKind::Count)
+        !matches!(self, Drift | Count)
     }
 }
 
@@ -36,21 +38,21 @@ pub fn kind(model: &Model, watched: &MonitorQuantity) -> MonitorKind {
             // The rotation is the third unknown of a node.
             let turns = |n: usize| model.dofs.count[n] == 3 && model.dofs.first[n] + 2 == *dof;
             if (0..model.nodes.len()).any(turns) {
-                MonitorKind::Rotation
+                Rotation
             } else {
-                MonitorKind::Length
+                Length
             }
         }
-        MonitorQuantity::Contact { .. } | MonitorQuantity::Reaction { .. } => MonitorKind::Force,
-        MonitorQuantity::Modes { .. } => MonitorKind::Count,
-        MonitorQuantity::Drift { .. } => MonitorKind::Drift,
-        MonitorQuantity::Pressure { .. } => MonitorKind::Pressure,
-        MonitorQuantity::Arc => MonitorKind::Length,
+        MonitorQuantity::Contact { .. } | MonitorQuantity::Reaction { .. } => Force,
+        MonitorQuantity::Modes { .. } => Count,
+        MonitorQuantity::Drift { .. } => Drift,
+        MonitorQuantity::Pressure { .. } => Pressure,
+        MonitorQuantity::Arc => Length,
         MonitorQuantity::Reported { kind, .. } => match kind {
-            ReportedKind::Length | ReportedKind::Other => MonitorKind::Length,
-            ReportedKind::Force => MonitorKind::Force,
-            ReportedKind::Pressure => MonitorKind::Pressure,
-            ReportedKind::Count => MonitorKind::Count,
+            ReportedKind::Length | ReportedKind::Other => Length,
+            ReportedKind::Force => Force,
+            ReportedKind::Pressure => Pressure,
+            ReportedKind::Count => Count,
         },
     }
 }

@@ -161,12 +161,14 @@ impl Plan {
 
     /// The cases as cells of a sweep; the shard depends on the paths selected by `count`.
     pub(super) fn cells(&self, count: fn(&str) -> bool) -> Vec<Cell> {
-        let cell = |case: &Case| Cell {
-            key: case.key(|_| true),
-            shard: case.key(count).mixed(),
-            steps: case.increments,
-        };
-        self.cases.iter().map(cell).collect()
+        self.cases
+            .iter()
+            .map(|case| Cell {
+                key: case.key(|_| true),
+                shard: case.key(count).mixed(),
+                steps: case.increments,
+            })
+            .collect()
     }
 
     /// The values of a case that define its problem: all columns except those about how it is computed.

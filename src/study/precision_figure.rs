@@ -56,8 +56,10 @@ struct ErrorPanel<'a> {
 impl ErrorPanel<'_> {
     /// A plot below the rest of a sheet.
     fn new(chart: &Precision, top: f64, is_force: bool, error_on_x: bool) -> ErrorPanel<'_> {
-        let of = |p: &Point| if is_force { p.force_error } else { p.error };
-        let errors = chart.points.iter().filter_map(of);
+        let errors = chart
+            .points
+            .iter()
+            .filter_map(|p| if is_force { p.force_error } else { p.error });
         let levels = chart
             .target
             .filter(|_| !is_force)
@@ -420,8 +422,10 @@ fn ring(sheet: &mut Sheet, at: (f64, f64)) {
 
 /// The values only: `refine=2, increment=0.1` gives `2, 0.1`.
 fn values(name: &str) -> String {
-    let value = |pair: &str| pair.rsplit('=').next().unwrap_or(pair).to_owned();
-    name.split(", ").map(value).collect::<Vec<_>>().join(", ")
+    name.split(", ")
+        .map(|pair| pair.rsplit('=').next().unwrap_or(pair).to_owned())
+        .collect::<Vec<_>>()
+        .join(", ")
 }
 
 #[cfg(test)]

@@ -68,12 +68,11 @@ pub fn read(
             "" => Ok(None),
             word => {
                 let value = word.parse::<f64>().ok().filter(|v| *v >= 0.0);
-                let none = || {
+                value.map(Some).ok_or_else(|| {
                     let word = quoted(word);
                     let message = format!("{word} under {head} is not a number that can be drawn");
                     wrong(head, message)
-                };
-                value.map(Some).ok_or_else(none)
+                })
             }
         };
         let count = |head: &str| number(head).map(|value| value.unwrap_or(0.0) as u64);

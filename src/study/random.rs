@@ -198,10 +198,10 @@ pub fn text(problem: &Problem, head: &[String]) -> String {
     let (name, rows) = match &problem.matrix {
         Matrix::Stiffness(rows) => ("Stiffness", lines(rows)),
         Matrix::Compliance(rows) => ("Compliance", lines(rows)),
-        Matrix::Entries(entries) => {
-            let entry = |entry: &(usize, usize, f64)| format!("{entry:?}");
-            ("Entries", entries.iter().map(entry).collect())
-        }
+        Matrix::Entries(entries) => (
+            "Entries",
+            entries.iter().map(|entry| format!("{entry:?}")).collect(),
+        ),
     };
     let _ = writeln!(text, "    ],\n    matrix: {name}([");
     for row in rows {

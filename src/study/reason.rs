@@ -42,23 +42,25 @@ stickslip_core::words! {
     }
 }
 
+use Reason::*;
+
 impl Reason {
     /// One letter for the reason, for small spaces.
     pub fn letter(self) -> char {
         match self {
-            Reason::MinorCycle | Reason::MajorCycle => 'o',
-            Reason::MinorLimit => 'm',
-            Reason::MajorLimit => 'M',
-            Reason::Singular => 's',
-            Reason::Diverged => 'd',
-            Reason::OverConstrained => 'j',
-            Reason::Refused => 'r',
-            Reason::NoAnswer | Reason::NotFound => 'n',
-            Reason::RoundOff => 'a',
-            Reason::NoRest => 'w',
-            Reason::Jump => 'b',
-            Reason::OffPath => 'p',
-            Reason::Inverted => 'i',
+            MinorCycle | MajorCycle => 'o',
+            MinorLimit => 'm',
+            MajorLimit => 'M',
+            Singular => 's',
+            Diverged => 'd',
+            OverConstrained => 'j',
+            Refused => 'r',
+            NoAnswer | NotFound => 'n',
+            RoundOff => 'a',
+            NoRest => 'w',
+            Jump => 'b',
+            OffPath => 'p',
+            Inverted => 'i',
         }
     }
 }
@@ -66,23 +68,23 @@ impl Reason {
 impl From<&Failure> for Reason {
     fn from(failure: &Failure) -> Reason {
         match failure {
-            Failure::Cycle(_) => Reason::MinorCycle,
-            Failure::MinorLimit { .. } => Reason::MinorLimit,
-            Failure::MajorLimit { .. } => Reason::MajorLimit,
-            Failure::MajorCycle(_) => Reason::MajorCycle,
-            Failure::Singular(_) => Reason::Singular,
-            Failure::Diverged { .. } => Reason::Diverged,
-            Failure::OverConstrained { .. } => Reason::OverConstrained,
-            Failure::Refused(_) => Reason::Refused,
+            Failure::Cycle(_) => MinorCycle,
+            Failure::MinorLimit { .. } => MinorLimit,
+            Failure::MajorLimit { .. } => MajorLimit,
+            Failure::MajorCycle(_) => MajorCycle,
+            Failure::Singular(_) => Singular,
+            Failure::Diverged { .. } => Diverged,
+            Failure::OverConstrained { .. } => OverConstrained,
+            Failure::Refused(_) => Refused,
             Failure::CutTooOften { last, .. } => Reason::from(last.as_ref()),
-            Failure::NoAnswer { .. } => Reason::NoAnswer,
-            Failure::NoRest { .. } => Reason::NoRest,
-            Failure::BranchJump { .. } => Reason::Jump,
-            Failure::PathReversal | Failure::ZeroMeasure => Reason::OffPath,
-            Failure::RoundOff { .. } => Reason::RoundOff,
-            Failure::Inverted(_) => Reason::Inverted,
+            Failure::NoAnswer { .. } => NoAnswer,
+            Failure::NoRest { .. } => NoRest,
+            Failure::BranchJump { .. } => Jump,
+            Failure::PathReversal | Failure::ZeroMeasure => OffPath,
+            Failure::RoundOff { .. } => RoundOff,
+            Failure::Inverted(_) => Inverted,
             Failure::LadderEnded { .. } | Failure::NotFound(_) | Failure::Reported { .. } => {
-                Reason::NotFound
+                NotFound
             }
         }
     }

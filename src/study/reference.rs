@@ -99,11 +99,10 @@ impl Reference {
             table.check(row)?;
             let number = |k: usize| {
                 let value = row.fields[k].parse::<f64>().ok();
-                let none = || {
+                value.filter(|v| v.is_finite()).ok_or_else(|| {
                     let (word, head) = (quoted(&row.fields[k]), shortened(heads[k]));
                     table.wrong(row, k, format!("{word} under {head} is not a number"))
-                };
-                value.filter(|v| v.is_finite()).ok_or_else(none)
+                })
             };
             let at = number(load)?;
             let leg = match leg {
@@ -174,8 +173,12 @@ impl<'a> Legs<'a> {
     fn of(&mut self, load: f64) -> usize {
         let here = self.leg;
         let size = max_abs(self.path);
-        let ends = |corner: &f64| (load - corner).abs() <= SAME_LOAD * size;
-        if self.path.get(here + 1).is_some_and(ends) && here + 2 < self.path.len() {
+        if self
+            .path
+            .get(here + 1)
+            .is_some_and(|corner| (load - corner).abs() <= SAME_LOAD * size)
+            && here + 2 < self.path.len()
+        {
             self.leg += 1;
         }
         here

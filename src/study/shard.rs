@@ -129,14 +129,17 @@ pub fn ranges(numbers: &[usize], most: usize) -> String {
             _ => ranges.push((number, number)),
         }
     }
-    let word = |&(first, last): &(usize, usize)| {
-        if first == last {
-            first.to_string()
-        } else {
-            format!("{first} to {last}")
-        }
-    };
-    let words: Vec<String> = ranges.iter().take(most).map(word).collect();
+    let words: Vec<String> = ranges
+        .iter()
+        .take(most)
+        .map(|&(first, last)| {
+            if first == last {
+                first.to_string()
+            } else {
+                format!("{first} to {last}")
+            }
+        })
+        .collect();
     let more = match ranges.len().saturating_sub(most) {
         0 => String::new(),
         n => format!(" and {}", counted(n, "more range")),

@@ -122,14 +122,17 @@ pub fn prepared(variants: &[Variant]) -> Vec<PreparedVariant<'_>> {
         settings: Settings::default(),
     };
     let spec = common.spec();
-    let prepared = |variant| {
-        let settings = settings(variant);
-        PreparedVariant {
-            variant,
-            method: Method::from_spec(&spec, &settings).filter(|method| method.increments() == 1.0),
-        }
-    };
-    variants.iter().map(prepared).collect()
+    variants
+        .iter()
+        .map(|variant| {
+            let settings = settings(variant);
+            PreparedVariant {
+                variant,
+                method: Method::from_spec(&spec, &settings)
+                    .filter(|method| method.increments() == 1.0),
+            }
+        })
+        .collect()
 }
 
 /// The settings of a variant, without cuts of the increment.

@@ -28,34 +28,36 @@ pub enum RunVerdict {
     Failed(Reason),
 }
 
+use RunVerdict::*;
+
 impl RunVerdict {
     /// The verdict on a failure.
     pub fn from_failure(failure: &Failure) -> RunVerdict {
         match failure {
-            Failure::Cycle(cycle) => RunVerdict::Cycle {
+            Failure::Cycle(cycle) => Cycle {
                 period: cycle.period,
                 majors: false,
             },
-            Failure::MajorCycle(round) => RunVerdict::Cycle {
+            Failure::MajorCycle(round) => Cycle {
                 period: round.period,
                 majors: true,
             },
-            Failure::Diverged { .. } => RunVerdict::Diverged,
+            Failure::Diverged { .. } => Diverged,
             // An incomplete search without a result proves nothing about the problem.
-            Failure::NoAnswer { .. } | Failure::NotFound(NotFound::Ray) => RunVerdict::NoAnswer,
-            other => RunVerdict::Failed(Reason::from(other)),
+            Failure::NoAnswer { .. } | Failure::NotFound(NotFound::Ray) => NoAnswer,
+            other => Failed(Reason::from(other)),
         }
     }
 
     /// Letter, glyph and word.
     fn names(self) -> (char, char, &'static str) {
         match self {
-            RunVerdict::Right => ('C', '✓', "converged"),
-            RunVerdict::Wrong => ('W', '≠', "wrong"),
-            RunVerdict::Cycle { .. } => ('O', '↺', "cycle"),
-            RunVerdict::Diverged => ('D', '↗', "diverged"),
-            RunVerdict::NoAnswer => ('N', '∅', "no-answer"),
-            RunVerdict::Failed(_) => ('F', '✗', "failed"),
+            Right => ('C', '✓', "converged"),
+            Wrong => ('W', '≠', "wrong"),
+            Cycle { .. } => ('O', '↺', "cycle"),
+            Diverged => ('D', '↗', "diverged"),
+            NoAnswer => ('N', '∅', "no-answer"),
+            Failed(_) => ('F', '✗', "failed"),
         }
     }
 
@@ -77,8 +79,8 @@ impl RunVerdict {
     /// What the word leaves out: the period of a cycle, the reason of a failure; otherwise empty.
     pub fn detail(self) -> String {
         match self {
-            RunVerdict::Cycle { period, .. } => period.to_string(),
-            RunVerdict::Failed(reason) => reason.to_string(),
+            Cycle { period, .. } => period.to_string(),
+            Failed(reason) => reason.to_string(),
             _ => String::new(),
         }
     }
@@ -87,11 +89,11 @@ impl RunVerdict {
 impl fmt::Display for RunVerdict {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            RunVerdict::Cycle { period, majors } => {
+            Cycle { period, majors } => {
                 let of = if *majors { "majors" } else { "minors" };
                 write!(f, "{period}-cycle of {of}")
             }
-            RunVerdict::Failed(reason) => write!(f, "{reason}"),
+            Failed(reason) => write!(f, "{reason}"),
             other => f.write_str(other.word()),
         }
     }

@@ -114,12 +114,14 @@ fn letter(event: &Event) -> Option<String> {
 
 /// Brightness from 0 to 1 of a colour such as `ffff/ffff/ffff` (Rec. 709).
 fn brightness(colour: &str) -> Option<f64> {
-    let part = |text: &str| {
-        let most = 16_u32.checked_pow(u32::try_from(text.len()).ok()?)? - 1;
-        let value = u32::from_str_radix(text, 16).ok()?;
-        Some(f64::from(value) / f64::from(most))
-    };
-    let parts: Option<Vec<f64>> = colour.split('/').map(part).collect();
+    let parts: Option<Vec<f64>> = colour
+        .split('/')
+        .map(|text| {
+            let most = 16_u32.checked_pow(u32::try_from(text.len()).ok()?)? - 1;
+            let value = u32::from_str_radix(text, 16).ok()?;
+            Some(f64::from(value) / f64::from(most))
+        })
+        .collect();
     match parts?.as_slice() {
         [red, green, blue] => Some(0.2126 * red + 0.7152 * green + 0.0722 * blue),
         _ => None,

@@ -68,12 +68,14 @@ impl Chooser {
     /// The entries whose name, title or group contains every typed word, ignoring case.
     pub fn left<'a>(&self, offers: &'a [Offer]) -> Vec<&'a Offer> {
         let typed = self.typed.to_lowercase();
-        let has = |offer: &&Offer| {
-            let all =
-                format!("{} {} {}", offer.name, offer.title, offer.group.title()).to_lowercase();
-            typed.split_whitespace().all(|word| all.contains(word))
-        };
-        offers.iter().filter(has).collect()
+        offers
+            .iter()
+            .filter(|offer| {
+                let all = format!("{} {} {}", offer.name, offer.title, offer.group.title())
+                    .to_lowercase();
+                typed.split_whitespace().all(|word| all.contains(word))
+            })
+            .collect()
     }
 
     /// The selected entry.
@@ -233,14 +235,13 @@ pub fn offers(progress: &Progress) -> Vec<Offer> {
         title: builtin::title(scene),
         reached: None,
     };
-    let lesson = |lesson: &EmbeddedFile| Offer {
+    let scenes = builtin::list().iter().map(scene);
+    let lessons = teach::list().iter().map(|lesson| Offer {
         group: Group::Lessons,
         name: lesson.name.into(),
         title: teach::lesson::title(lesson),
         reached: progress.of(lesson.name),
-    };
-    let scenes = builtin::list().iter().map(scene);
-    let lessons = teach::list().iter().map(lesson);
+    });
     let mut all: Vec<Offer> = scenes.chain(lessons).collect();
     // The sort is stable: entries keep their order within each group.
     all.sort_by_key(|offer| offer.group as usize);
@@ -267,13 +268,15 @@ pub fn files(folder: &Path) -> Vec<Offer> {
         .collect();
     names.sort();
     names.truncate(MOST);
-    let offer = |name| Offer {
-        group: Group::Files,
-        name,
-        title: String::new(),
-        reached: None,
-    };
-    names.into_iter().map(offer).collect()
+    names
+        .into_iter()
+        .map(|name| Offer {
+            group: Group::Files,
+            name,
+            title: String::new(),
+            reached: None,
+        })
+        .collect()
 }
 
 #[cfg(test)]

@@ -24,6 +24,8 @@ pub enum Purpose {
     Answer,
 }
 
+use Purpose::*;
+
 /// An input line.
 #[derive(Debug, Clone)]
 pub struct CommandLine {
@@ -84,7 +86,7 @@ impl CommandLine {
         self.input = Input::new(text.clone());
         // A single completion is final: the next Tab completes the next word.
         match candidates.len() {
-            1 if self.purpose == Purpose::Command && !self.goes_on() => self.insert_blank(),
+            1 if self.purpose == Command && !self.goes_on() => self.insert_blank(),
             1 => {}
             _ => self.completions = Some((candidates, at)),
         }
@@ -102,9 +104,9 @@ impl CommandLine {
 
     fn candidates(&self, context: &Context) -> Vec<String> {
         match self.purpose {
-            Purpose::Command => action::complete(self.text(), context),
-            Purpose::Increment | Purpose::Answer => Vec::new(),
-            Purpose::Node => action::complete(&format!("node {}", self.text()), context)
+            Command => action::complete(self.text(), context),
+            Increment | Answer => Vec::new(),
+            Node => action::complete(&format!("node {}", self.text()), context)
                 .iter()
                 .filter_map(|line| line.strip_prefix("node ").map(String::from))
                 .collect(),
@@ -113,7 +115,7 @@ impl CommandLine {
 
     /// Recalls an older line from the history (a newer one with −1).
     pub fn recall(&mut self, by: isize, history: &[String]) {
-        if self.purpose != Purpose::Command {
+        if self.purpose != Command {
             return;
         }
         self.completions = None;
@@ -167,35 +169,36 @@ impl CommandLine {
         }
         let name = self.text().split_whitespace().next();
         let hint = match (self.purpose, name.map(|name| context.entry(name))) {
-            (Purpose::Increment, _) => {
+            (Increment, _) => {
                 "Enter: restart this increment with it   Esc: cancel".into()
             }
-            (Purpose::Answer, _) => "Enter: answer with this number   Esc: back to the panes".into(),
-            (Purpose::Node, _) => {
+            (Answer, _) => "Enter: answer with this number   Esc: back to the panes".into(),
+            (Node, _) => {
                 "a node's name or part of it; Enter finds the next match, Enter alone repeats the search"
                     .into()
             }
-            (Purpose::Command, Some(Ok(entry))) if entry.offered(context).is_err() => {
+            (Command, Some(Ok(entry))) if entry.offered(context).is_err() => {
                 let why = entry.offered(context).err().unwrap_or_default();
                 format!("{} {}   not available: {why}", entry.name, entry.arguments)
             }
-            (Purpose::Command, Some(Ok(entry)))
+            (Command, Some(Ok(entry)))
                 if entry.name == "set" && context.offers.is_some() =>
             {
                 self.parameter(entry, context)
             }
-            (Purpose::Command, Some(Ok(entry))) => {
+            (Command, Some(Ok(entry))) => {
                 let keys = keys(entry, context);
                 format!("{} {}   {keys}{}", entry.name, entry.arguments, entry.help)
             }
-            (Purpose::Command, Some(Err(_))) => choices(self.text(), context),
-            (Purpose::Command, None) => {
+            (Command, Some(Err(_))) => choices(self.text(), context),
+            (Command, None) => {
                 "name of an action; Tab completes, Up recalls, Esc cancels".into()
             }
         };
         let lines = paint::wrap(&hint, width.saturating_sub(2)).into_iter();
-        let line = |line| Line::styled(format!(" {line}"), theme.faint);
-        lines.map(line).collect()
+        lines
+            .map(|line| Line::styled(format!(" {line}"), theme.faint))
+            .collect()
     }
 
     /// Describes the parameter that is being set, or lists all parameters.
@@ -234,10 +237,7 @@ impl CommandLine {
                 .entry(name)
                 .is_ok_and(|entry| entry.offered(context).is_err())
         };
-        if self.purpose == Purpose::Command
-            && !candidate.trim().contains(' ')
-            && grey(candidate.trim())
-        {
+        if self.purpose == Command && !candidate.trim().contains(' ') && grey(candidate.trim()) {
             return Cow::Owned(format!("({candidate})"));
         }
         Cow::Borrowed(self.word(candidate))
@@ -246,7 +246,7 @@ impl CommandLine {
     /// The word that a candidate completes.
     fn word<'a>(&self, candidate: &'a str) -> &'a str {
         let name = candidate.split_whitespace().next();
-        let paths = name.is_some_and(action::takes_path) && self.purpose == Purpose::Command;
+        let paths = name.is_some_and(action::takes_path) && self.purpose == Command;
         if !paths {
             return candidate.rsplit(' ').next().unwrap_or(candidate);
         }

@@ -85,14 +85,18 @@ impl Ahead {
                 "{count} keys wait {until}; further keys are ignored"
             ));
         }
-        let name = |typed: &QueuedInput| match typed {
-            QueuedInput::Key(key) => keys::name(key).unwrap_or_default(),
-            QueuedInput::Line(line) => format!(":{line}"),
-            QueuedInput::Paste(_) => "pasted text".into(),
-        };
         let all = count <= NAMED + 1;
         let named = if all { count } else { NAMED };
-        let names: Vec<String> = self.queue.iter().take(named).map(name).collect();
+        let names: Vec<String> = self
+            .queue
+            .iter()
+            .take(named)
+            .map(|typed| match typed {
+                QueuedInput::Key(key) => keys::name(key).unwrap_or_default(),
+                QueuedInput::Line(line) => format!(":{line}"),
+                QueuedInput::Paste(_) => "pasted text".into(),
+            })
+            .collect();
         let names = names.join(", ");
         match count {
             0 => None,

@@ -1,6 +1,7 @@
 //! Names of terminal keys, as in the table of actions.
 
 use crate::event::{KeyCode, KeyEvent, Modifiers};
+use KeyCode::*;
 
 /// The table's name of a key press: `s`, `S`, `F10`, `Shift-F11`, `Ctrl-c`, `PageDown`. `None` for keys without a name in the table.
 pub fn name(key: &KeyEvent) -> Option<String> {
@@ -9,15 +10,15 @@ pub fn name(key: &KeyEvent) -> Option<String> {
     }
     let Modifiers { control, shift, .. } = key.modifiers;
     let name = match key.code {
-        KeyCode::Char(' ') => "Space".into(),
-        KeyCode::Char(letter) if control => format!("Ctrl-{}", letter.to_lowercase()),
-        KeyCode::Char(letter) => letter.into(),
-        KeyCode::F(number) if shift => format!("Shift-F{number}"),
+        Char(' ') => "Space".into(),
+        Char(letter) if control => format!("Ctrl-{}", letter.to_lowercase()),
+        Char(letter) => letter.into(),
+        F(number) if shift => format!("Shift-F{number}"),
         // Many terminals send Shift-F11 as F23, which is F11 plus 12.
-        KeyCode::F(number @ 13..=24) => format!("Shift-F{}", number - 12),
-        KeyCode::F(number) => format!("F{number}"),
-        KeyCode::Tab if shift => "Shift-Tab".into(),
-        KeyCode::BackTab => "Shift-Tab".into(),
+        F(number @ 13..=24) => format!("Shift-F{}", number - 12),
+        F(number) => format!("F{number}"),
+        Tab if shift => "Shift-Tab".into(),
+        BackTab => "Shift-Tab".into(),
         other => plain(other)?.into(),
     };
     Some(name)
@@ -26,20 +27,20 @@ pub fn name(key: &KeyEvent) -> Option<String> {
 /// Names of the keys that type no letter.
 fn plain(code: KeyCode) -> Option<&'static str> {
     Some(match code {
-        KeyCode::Enter => "Enter",
-        KeyCode::Tab => "Tab",
-        KeyCode::Esc => "Esc",
-        KeyCode::Up => "Up",
-        KeyCode::Down => "Down",
-        KeyCode::Left => "Left",
-        KeyCode::Right => "Right",
-        KeyCode::Home => "Home",
-        KeyCode::End => "End",
-        KeyCode::PageUp => "PageUp",
-        KeyCode::PageDown => "PageDown",
-        KeyCode::Backspace => "Backspace",
-        KeyCode::Delete => "Delete",
-        KeyCode::BackTab | KeyCode::Char(_) | KeyCode::F(_) => return None,
+        Enter => "Enter",
+        Tab => "Tab",
+        Esc => "Esc",
+        Up => "Up",
+        Down => "Down",
+        Left => "Left",
+        Right => "Right",
+        Home => "Home",
+        End => "End",
+        PageUp => "PageUp",
+        PageDown => "PageDown",
+        Backspace => "Backspace",
+        Delete => "Delete",
+        BackTab | Char(_) | F(_) => return None,
     })
 }
 
@@ -52,7 +53,7 @@ pub fn apart(key: &KeyEvent) -> impl Iterator<Item = KeyEvent> {
     let alone = KeyEvent::new(key.code, modifiers);
     let together = key.modifiers.alt;
     together
-        .then(|| KeyEvent::new(KeyCode::Esc, Modifiers::NONE))
+        .then(|| KeyEvent::new(Esc, Modifiers::NONE))
         .into_iter()
         .chain([alone])
 }
@@ -66,8 +67,8 @@ pub fn press(name: &str) -> Option<KeyEvent> {
     };
     let mut letters = rest.chars();
     let code = match (letters.next()?, letters.as_str()) {
-        (letter, "") => KeyCode::Char(letter),
-        ('F', number) if number.parse::<u8>().is_ok() => KeyCode::F(number.parse().ok()?),
+        (letter, "") => Char(letter),
+        ('F', number) if number.parse::<u8>().is_ok() => F(number.parse().ok()?),
         _ => NAMED
             .iter()
             .copied()
@@ -98,7 +99,7 @@ pub fn presses(names: &str) -> Result<Vec<KeyEvent>, String> {
             _ => {
                 let blank = if types { " " } else { "" };
                 let letters = blank.chars().chain(word.chars());
-                pressed.extend(letters.map(|c| KeyEvent::new(KeyCode::Char(c), Modifiers::NONE)));
+                pressed.extend(letters.map(|c| KeyEvent::new(Char(c), Modifiers::NONE)));
                 types = true;
             }
         }
@@ -107,27 +108,27 @@ pub fn presses(names: &str) -> Result<Vec<KeyEvent>, String> {
 }
 
 const NAMED: [KeyCode; 15] = [
-    KeyCode::Char(' '),
-    KeyCode::BackTab,
-    KeyCode::Enter,
-    KeyCode::Tab,
-    KeyCode::Esc,
-    KeyCode::Up,
-    KeyCode::Down,
-    KeyCode::Left,
-    KeyCode::Right,
-    KeyCode::Home,
-    KeyCode::End,
-    KeyCode::PageUp,
-    KeyCode::PageDown,
-    KeyCode::Backspace,
-    KeyCode::Delete,
+    Char(' '),
+    BackTab,
+    Enter,
+    Tab,
+    Esc,
+    Up,
+    Down,
+    Left,
+    Right,
+    Home,
+    End,
+    PageUp,
+    PageDown,
+    Backspace,
+    Delete,
 ];
 
 fn spelled(code: KeyCode) -> Option<&'static str> {
     match code {
-        KeyCode::Char(' ') => Some("Space"),
-        KeyCode::BackTab => Some("Shift-Tab"),
+        Char(' ') => Some("Space"),
+        BackTab => Some("Shift-Tab"),
         other => plain(other),
     }
 }

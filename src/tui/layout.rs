@@ -14,7 +14,7 @@
 use ratatui::layout::{Constraint, Layout, Rect};
 
 stickslip_core::words! {
-    /// A pane; all but [`Pane::Lesson`] can have the focus.
+    /// A pane; all but [`Lesson`] can have the focus.
     pub enum Pane, title {
         /// The table of slave nodes.
         Nodes "slave nodes",
@@ -41,19 +41,12 @@ stickslip_core::words! {
     }
 }
 
+use Pane::*;
+
 impl Pane {
     /// The panes in Tab order.
     pub const ALL: [Pane; 10] = [
-        Pane::Nodes,
-        Pane::Decision,
-        Pane::Residual,
-        Pane::Shape,
-        Pane::Curve,
-        Pane::Timeline,
-        Pane::Diagnosis,
-        Pane::Branches,
-        Pane::Remedies,
-        Pane::Contact,
+        Nodes, Decision, Residual, Shape, Curve, Timeline, Diagnosis, Branches, Remedies, Contact,
     ];
 
     /// Its number in Tab order, from 1.
@@ -67,14 +60,14 @@ impl Pane {
     /// Minimum height of the pane below a table that needs rows.
     fn least(self) -> u16 {
         match self {
-            Pane::Decision | Pane::Nodes => SHORT_DECISION,
+            Decision | Nodes => SHORT_DECISION,
             _ => PAGE_BELOW,
         }
     }
 
     /// Whether the pane shares one place with others on medium screens.
     pub fn takes_turns(self) -> bool {
-        !matches!(self, Pane::Nodes | Pane::Decision | Pane::Shape)
+        !matches!(self, Nodes | Decision | Shape)
     }
 }
 
@@ -94,9 +87,9 @@ pub struct ShownPanes {
 impl Default for ShownPanes {
     fn default() -> ShownPanes {
         ShownPanes {
-            focus: Pane::Nodes,
-            page: Pane::Decision,
-            chart: Pane::Residual,
+            focus: Nodes,
+            page: Decision,
+            chart: Residual,
             zoomed: false,
         }
     }
@@ -111,7 +104,7 @@ impl ShownPanes {
     /// Focuses a pane and makes it visible.
     pub(super) fn look_at(&mut self, pane: Pane) {
         self.focus = pane;
-        if pane != Pane::Nodes {
+        if pane != Nodes {
             self.page = pane;
         }
         if pane.takes_turns() {
@@ -215,10 +208,7 @@ pub fn places(area: Rect, choice: &Choice) -> ScreenAreas {
         _ if area.width >= 110 && body.height >= 30 => medium(body, choice),
         _ => small(body, choice),
     };
-    let listed = panes
-        .iter()
-        .filter(|(pane, _)| *pane != Pane::Lesson)
-        .count();
+    let listed = panes.iter().filter(|(pane, _)| *pane != Lesson).count();
     let paged = listed < 4 && !choice.panes.zoomed;
     ScreenAreas {
         status,
@@ -253,7 +243,7 @@ fn small(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
     }
     let least = choice.panes.page.least();
     let [upper, lower] = top(body, table(choice, body.height - least));
-    vec![(Pane::Nodes, upper), (choice.panes.page, lower)]
+    vec![(Nodes, upper), (choice.panes.page, lower)]
 }
 
 /// The layout with a lesson: a separate column on a large screen, the place of the chart on a medium one, the rows at the bottom on
@@ -262,7 +252,7 @@ fn with_lesson(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
     if body.width >= 110 + LESSON && body.height >= 30 {
         let [left, right] = left(body, body.width - LESSON);
         let mut panes = medium(left, choice);
-        panes.push((Pane::Lesson, right));
+        panes.push((Lesson, right));
         return panes;
     }
     if body.width >= 110 && body.height >= 30 {
@@ -275,19 +265,19 @@ fn with_lesson(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
         let other = if choice.panes.focus == choice.panes.chart {
             choice.panes.chart
         } else {
-            Pane::Shape
+            Shape
         };
         return vec![
-            (Pane::Nodes, nodes),
-            (Pane::Decision, decision),
+            (Nodes, nodes),
+            (Decision, decision),
             (other, shape),
-            (Pane::Lesson, right),
+            (Lesson, right),
         ];
     }
     let least = table(choice, TABLE_FRAME + 1);
     if body.height < least + PAGE {
         let pane = match choice.panes.focus {
-            Pane::Nodes => Pane::Lesson,
+            Nodes => Lesson,
             other => other,
         };
         return vec![(pane, body)];
@@ -298,22 +288,22 @@ fn with_lesson(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
     let mut panes = match upper.height.saturating_sub(nodes) {
         PAGE.. => {
             let [nodes, page] = top(upper, nodes);
-            vec![(Pane::Nodes, nodes), (choice.panes.page, page)]
+            vec![(Nodes, nodes), (choice.panes.page, page)]
         }
-        _ if choice.panes.focus == Pane::Nodes => vec![(Pane::Nodes, upper)],
+        _ if choice.panes.focus == Nodes => vec![(Nodes, upper)],
         _ => vec![(choice.panes.focus, upper)],
     };
-    panes.push((Pane::Lesson, lower));
+    panes.push((Lesson, lower));
     panes
 }
 
 /// The focused pane alone; on a wide screen, the contact is next to the decision that it explains.
 fn zoomed(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
-    if choice.panes.focus != Pane::Decision || body.width < BOTH || !choice.has_shape {
+    if choice.panes.focus != Decision || body.width < BOTH || !choice.has_shape {
         return vec![(choice.panes.focus, body)];
     }
     let [left, right] = left(body, EXPLAINED.max(body.width * 3 / 5));
-    vec![(Pane::Decision, left), (Pane::Contact, right)]
+    vec![(Decision, left), (Contact, right)]
 }
 
 /// The focused pane with the lesson next to it or below it, since the lesson says what to do there.
@@ -325,14 +315,14 @@ fn zoomed_with_lesson(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
             NARROW_LESSON
         };
         let [left, right] = left(body, body.width - lesson);
-        return vec![(choice.panes.focus, left), (Pane::Lesson, right)];
+        return vec![(choice.panes.focus, left), (Lesson, right)];
     }
     if body.height < LEAST_LESSON + PAGE {
         return vec![(choice.panes.focus, body)];
     }
     let lesson = choice.lesson.min(body.height / 2).max(LEAST_LESSON);
     let [upper, lower] = top(body, body.height - lesson);
-    vec![(choice.panes.focus, upper), (Pane::Lesson, lower)]
+    vec![(choice.panes.focus, upper), (Lesson, lower)]
 }
 
 /// The table above the timeline, then the decision next to the chart.
@@ -348,13 +338,13 @@ fn shapeless(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
     let columns = [2, 3].map(Constraint::Fill);
     let [decision, chart] = Layout::horizontal(columns).areas(lower);
     let other = match choice.panes.chart {
-        Pane::Timeline => Pane::Residual,
+        Timeline => Residual,
         chart => chart,
     };
     vec![
-        (Pane::Nodes, nodes),
-        (Pane::Timeline, timeline),
-        (Pane::Decision, decision),
+        (Nodes, nodes),
+        (Timeline, timeline),
+        (Decision, decision),
         (other, chart),
     ]
 }
@@ -365,10 +355,10 @@ fn medium(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
     let [left, right] = left(lower, (body.width / 2).clamp(66, 76));
     let [decision, residual] = top(left, decision_rows(lower.height));
     vec![
-        (Pane::Nodes, upper),
-        (Pane::Decision, decision),
+        (Nodes, upper),
+        (Decision, decision),
         (choice.panes.chart, residual),
-        (Pane::Shape, right),
+        (Shape, right),
     ]
 }
 
@@ -394,19 +384,19 @@ fn large(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
     let rows = [Constraint::Fill(3), Constraint::Fill(2)];
     let [shape, curve] = Layout::vertical(rows).areas(right);
     let third = match choice.panes.chart {
-        Pane::Curve => Pane::Residual,
-        Pane::Timeline if timeline.height > 0 => Pane::Residual,
+        Curve => Residual,
+        Timeline if timeline.height > 0 => Residual,
         chart => chart,
     };
     let mut panes = vec![
-        (Pane::Nodes, nodes),
-        (Pane::Decision, decision),
+        (Nodes, nodes),
+        (Decision, decision),
         (third, residual),
-        (Pane::Shape, shape),
-        (Pane::Curve, curve),
+        (Shape, shape),
+        (Curve, curve),
     ];
     if timeline.height > 0 {
-        panes.push((Pane::Timeline, timeline));
+        panes.push((Timeline, timeline));
     }
     panes
 }

@@ -129,8 +129,12 @@ impl Learning {
         view: &View,
         visible: Option<VisibleLines>,
     ) -> Result<bool, LessonRefusal> {
-        let continues = |tutor: &Tutor| tutor.wants(action);
-        if self.guess.is_none() && self.lesson.as_ref().is_some_and(continues) {
+        if self.guess.is_none()
+            && self
+                .lesson
+                .as_ref()
+                .is_some_and(|tutor| tutor.wants(action))
+        {
             self.check_read(visible)?;
         }
         match (&mut self.lesson, &mut self.guess) {
@@ -151,10 +155,14 @@ impl Learning {
 
     /// Whether to hide a decision of the shown frame, or the judge's verdict.
     pub fn hides_any(&self, view: &View) -> bool {
-        let lesson = |tutor: &Tutor| tutor.hides() || tutor.hides_verdict();
-        let is_open = |guess: &Guess| guess.is_open(view.cursor, view.frame());
         view.event().is_some()
-            && (self.lesson.as_ref().is_some_and(lesson) || self.guess().is_some_and(is_open))
+            && (self
+                .lesson
+                .as_ref()
+                .is_some_and(|tutor| tutor.hides() || tutor.hides_verdict())
+                || self
+                    .guess()
+                    .is_some_and(|guess| guess.is_open(view.cursor, view.frame())))
     }
 
     /// Whether to hide the judge's verdict.
@@ -164,9 +172,11 @@ impl Learning {
 
     /// Whether to hide the decision on this slave node.
     pub fn hides(&self, view: &View, slave: usize) -> bool {
-        let is_open = |guess: &Guess| guess.hides(view.cursor, view.frame(), slave);
         view.record(slave).is_some()
-            && (self.lesson.as_ref().is_some_and(Tutor::hides) || self.guess().is_some_and(is_open))
+            && (self.lesson.as_ref().is_some_and(Tutor::hides)
+                || self
+                    .guess()
+                    .is_some_and(|guess| guess.hides(view.cursor, view.frame(), slave)))
     }
 
     /// Records which lines are visible, before a key is handled.

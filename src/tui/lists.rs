@@ -5,6 +5,8 @@ use crate::layout::Pane;
 use crate::panes::diagnosis::choices;
 use crate::screen;
 use crate::view::View;
+use Pane::*;
+use Step::*;
 use stickslip_debugger::action::{Page, Step};
 use stickslip_debugger::explain::remedy::RemedyInput;
 use stickslip_debugger::explain::try_list::TryOutcome;
@@ -15,8 +17,8 @@ impl App {
     /// Shows the curve of a monitor, or of the next one, also if the pane was hidden.
     pub(super) fn watch(&mut self, monitor: Option<usize>, view: Option<&View>) {
         let places = screen::places(self, view, self.area);
-        if places.panes.iter().all(|(pane, _)| *pane != Pane::Curve) {
-            self.panes.look_at(Pane::Curve);
+        if places.panes.iter().all(|(pane, _)| *pane != Curve) {
+            self.panes.look_at(Curve);
         }
         let monitors = view.map_or(&[][..], |view| &view.model.monitors);
         let shown = view.map_or(0, |view| self.watched(view));
@@ -31,15 +33,15 @@ impl App {
     /// Opens a page, and runs its analysis if there is no result yet. Requesting an open page again keeps it open.
     pub(super) fn page(&mut self, page: Page, view: Option<&View>) -> Option<Effect> {
         match page {
-            Page::Timeline => self.panes.zoom(Pane::Timeline),
-            Page::Branches => self.panes.zoom(Pane::Branches),
-            Page::Contact => self.panes.zoom(Pane::Contact),
-            Page::Diagnosis => return self.ask_page(Pane::Diagnosis, view),
+            Page::Timeline => self.panes.zoom(Timeline),
+            Page::Branches => self.panes.zoom(Branches),
+            Page::Contact => self.panes.zoom(Contact),
+            Page::Diagnosis => return self.ask_page(Diagnosis, view),
             // The cures of a finished run are in its diagnosis.
             Page::Remedies if view.is_some_and(|view| view.model.finished.is_some()) => {
-                return self.ask_page(Pane::Diagnosis, view);
+                return self.ask_page(Diagnosis, view);
             }
-            Page::Remedies => return self.ask_page(Pane::Remedies, view),
+            Page::Remedies => return self.ask_page(Remedies, view),
         }
         if page == Page::Branches {
             let all = summaries(view?.tree?);
@@ -56,11 +58,11 @@ impl App {
         self.panes.look_at(pane);
         let view = view?;
         let found = match pane {
-            Pane::Diagnosis => view.examination().map(|found| found.is_some()),
+            Diagnosis => view.examination().map(|found| found.is_some()),
             _ => view.tries_here().then(|| !view.is_trying()),
         };
         match (found, pane) {
-            (None, Pane::Diagnosis) => {
+            (None, Diagnosis) => {
                 (self.answer, self.scroll) = (0, 0);
                 return self.submit(Command::Census(Vec::new()), Some(view));
             }
@@ -68,7 +70,7 @@ impl App {
                 self.remedy = 0;
                 return self.submit(Command::Remedies, Some(view));
             }
-            (Some(false), Pane::Diagnosis) if again => {
+            (Some(false), Diagnosis) if again => {
                 self.say("diagnosis running; Esc closes this page");
             }
             (Some(false), _) if again => {
@@ -84,7 +86,7 @@ impl App {
     /// the analysis if there is no result yet.
     pub(super) fn take_answer(&mut self, view: Option<&View>) -> Option<Effect> {
         let Some(found) = view.and_then(View::examination) else {
-            return self.ask_page(Pane::Diagnosis, view);
+            return self.ask_page(Diagnosis, view);
         };
         if let Some((part, _)) =
             found.and_then(|page| page.below.get(self.answer.checked_sub(choices(page))?))
@@ -135,7 +137,7 @@ impl App {
         if view.is_some_and(View::has_tried) {
             self.apply(self.remedy, view)
         } else {
-            self.ask_page(Pane::Remedies, view)
+            self.ask_page(Remedies, view)
         }
     }
 
@@ -198,13 +200,13 @@ impl App {
         let text = self.sought.to_lowercase();
         let view = view.filter(|_| !text.is_empty())?;
         let (names, at): (Vec<String>, _) = match self.panes.focus {
-            Pane::Branches if !screen::is_hidden(Pane::Branches, self, view) => {
+            Branches if !screen::is_hidden(Branches, self, view) => {
                 let all = summaries(view.tree?);
                 let order = verdicts::order(&all);
                 let names = order.iter().map(|&(branch, _)| all[branch].name.clone());
                 (names.collect(), &mut self.branch)
             }
-            Pane::Remedies if !screen::is_hidden(Pane::Remedies, self, view) => {
+            Remedies if !screen::is_hidden(Remedies, self, view) => {
                 let names = view.trials().iter().map(|trial| trial.label.clone());
                 (names.collect(), &mut self.remedy)
             }
@@ -226,7 +228,7 @@ impl App {
     }
 
     pub(super) fn step(&mut self, step: Step, count: isize, view: Option<&View>) -> Option<Effect> {
-        if self.panes.focus == Pane::Timeline
+        if self.panes.focus == Timeline
             && let Some(to) = view.and_then(|view| along(step, count, view))
         {
             return self.submit(Command::Goto { step: to }, view);
@@ -235,20 +237,20 @@ impl App {
             .and_then(|view| view.examination()?)
             .map(|page| choices(page) + page.below.len());
         let list = match self.panes.focus {
-            Pane::Branches => {
+            Branches => {
                 let count = view.and_then(|view| Some(view.tree?.branches().len()));
                 Some((&mut self.branch, count))
             }
-            Pane::Remedies => Some((&mut self.remedy, view.map(|view| view.trials().len()))),
-            Pane::Diagnosis if matches!(step, Step::PageUp | Step::PageDown) => {
+            Remedies => Some((&mut self.remedy, view.map(|view| view.trials().len()))),
+            Diagnosis if matches!(step, PageUp | PageDown) => {
                 Some((&mut self.scroll, Some(usize::MAX)))
             }
-            Pane::Diagnosis => Some((&mut self.answer, answers)),
+            Diagnosis => Some((&mut self.answer, answers)),
             _ => None,
         };
         if let Some((at, length)) = list {
             let last = length.unwrap_or(0).saturating_sub(1);
-            *at = moved(*at, step, count, last, [Step::Up, Step::Down]);
+            *at = moved(*at, step, count, last, [Up, Down]);
             return None;
         }
         let order = view.map_or(Vec::new(), |view| self.order(view));
@@ -262,19 +264,19 @@ impl App {
             row(to.min(last))
         };
         match (self.panes.focus, step) {
-            (Pane::Shape, Step::Left) => self.camera = self.camera.panned(-1.0, 0.0),
-            (Pane::Shape, Step::Right) => self.camera = self.camera.panned(1.0, 0.0),
-            (Pane::Shape, Step::Up) => self.camera = self.camera.panned(0.0, 1.0),
-            (Pane::Shape, Step::Down) => self.camera = self.camera.panned(0.0, -1.0),
-            (Pane::Contact, Step::Left) => self.turned = self.turned.wrapping_sub(1),
-            (Pane::Contact, Step::Right) => self.turned = self.turned.wrapping_add(1),
-            (_, Step::Up) => self.selected = to(-1),
-            (_, Step::Down) => self.selected = to(1),
-            (_, Step::PageUp) => self.selected = to(-PAGE),
-            (_, Step::PageDown) => self.selected = to(PAGE),
-            (_, Step::First) => self.selected = row(0),
-            (_, Step::Last) => self.selected = row(last),
-            (_, Step::Left | Step::Right) => {}
+            (Shape, Left) => self.camera = self.camera.panned(-1.0, 0.0),
+            (Shape, Right) => self.camera = self.camera.panned(1.0, 0.0),
+            (Shape, Up) => self.camera = self.camera.panned(0.0, 1.0),
+            (Shape, Down) => self.camera = self.camera.panned(0.0, -1.0),
+            (Contact, Left) => self.turned = self.turned.wrapping_sub(1),
+            (Contact, Right) => self.turned = self.turned.wrapping_add(1),
+            (_, Up) => self.selected = to(-1),
+            (_, Down) => self.selected = to(1),
+            (_, PageUp) => self.selected = to(-PAGE),
+            (_, PageDown) => self.selected = to(PAGE),
+            (_, First) => self.selected = row(0),
+            (_, Last) => self.selected = row(last),
+            (_, Left | Right) => {}
         }
         None
     }
@@ -290,10 +292,10 @@ fn follow(app: &mut App, trial: &RemedyTrial, view: Option<&View>) -> Option<Eff
 /// The index after a step in a list with indices up to `last`; steps other than `back` and `forth` by one stay.
 fn moved(at: usize, step: Step, count: isize, last: usize, [back, forth]: [Step; 2]) -> usize {
     let by = match step {
-        Step::First => return 0,
-        Step::Last => return last,
-        Step::PageUp => -PAGE,
-        Step::PageDown => PAGE,
+        First => return 0,
+        Last => return last,
+        PageUp => -PAGE,
+        PageDown => PAGE,
         step if step == back => -count,
         step if step == forth => count,
         _ => 0,
@@ -304,6 +306,6 @@ fn moved(at: usize, step: Step, count: isize, last: usize, [back, forth]: [Step;
 /// The target of a step along the timeline; `None` for other steps.
 fn along(step: Step, count: isize, view: &View) -> Option<usize> {
     let last = view.frames.len().saturating_sub(1);
-    let steps = [Step::Left, Step::Right];
-    (!matches!(step, Step::Up | Step::Down)).then(|| moved(view.cursor, step, count, last, steps))
+    let steps = [Left, Right];
+    (!matches!(step, Up | Down)).then(|| moved(view.cursor, step, count, last, steps))
 }

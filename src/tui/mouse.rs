@@ -7,6 +7,7 @@ use crate::layout::Pane;
 use crate::panes::{branches, nodes, remedies, shape, timeline};
 use crate::screen;
 use crate::view::View;
+use Pane::*;
 use ratatui::layout::{Position, Rect};
 use stickslip_debugger::Command;
 use stickslip_debugger::action::{Action, Step, Ui};
@@ -32,26 +33,26 @@ impl App {
         let hidden = screen::is_hidden(pane, self, view);
         // The layout before the focus changes, which can change the layout.
         let row = match pane {
-            Pane::Branches if !hidden => branches::row_at(area, self, view, at),
-            Pane::Remedies => remedies::row_at(area, self, view, at),
+            Branches if !hidden => branches::row_at(area, self, view, at),
+            Remedies => remedies::row_at(area, self, view, at),
             _ => None,
         };
         let slave = match pane {
-            Pane::Nodes => nodes::slave_at(area, self, view, at),
-            Pane::Shape => shape::slave_at(area, self, view, at),
-            Pane::Timeline if !hidden => timeline::slave_at(area, self, view, at),
+            Nodes => nodes::slave_at(area, self, view, at),
+            Shape => shape::slave_at(area, self, view, at),
+            Timeline if !hidden => timeline::slave_at(area, self, view, at),
             _ => None,
         };
         let step = match pane {
-            Pane::Timeline if !hidden => timeline::step_at(area, view, at),
+            Timeline if !hidden => timeline::step_at(area, view, at),
             _ => None,
         };
-        if pane != Pane::Lesson {
+        if pane != Lesson {
             self.panes.look_at(pane);
         }
         match (pane, row) {
-            (Pane::Branches, Some(row)) => self.branch = row,
-            (Pane::Remedies, Some(row)) if !hidden => self.remedy = row,
+            (Branches, Some(row)) => self.branch = row,
+            (Remedies, Some(row)) if !hidden => self.remedy = row,
             _ => {}
         }
         if let Some(slave) = slave {
@@ -92,15 +93,15 @@ impl App {
         let view = view?;
         let (pane, _) = pane_at(self, at, view)?;
         let step = match (pane, up) {
-            (Pane::Shape, true) => {
+            (Shape, true) => {
                 self.camera = self.camera.zoomed(1.25);
                 return None;
             }
-            (Pane::Shape, false) => {
+            (Shape, false) => {
                 self.camera = self.camera.zoomed(0.8);
                 return None;
             }
-            (Pane::Diagnosis, _) => {
+            (Diagnosis, _) => {
                 let found = view.examination().flatten();
                 let last = found.map_or(0, |found| found.lines().len());
                 self.scroll = if up {
@@ -111,10 +112,10 @@ impl App {
                 return None;
             }
             // The timeline cannot be scrolled while the solver runs.
-            (Pane::Timeline, _) if view.running || self.ahead.is_any() => return None,
-            (Pane::Timeline, true) => Step::Left,
-            (Pane::Timeline, false) => Step::Right,
-            (Pane::Residual | Pane::Curve | Pane::Lesson | Pane::Contact, _) => return None,
+            (Timeline, _) if view.running || self.ahead.is_any() => return None,
+            (Timeline, true) => Step::Left,
+            (Timeline, false) => Step::Right,
+            (Residual | Curve | Lesson | Contact, _) => return None,
             (_, true) => Step::Up,
             (_, false) => Step::Down,
         };

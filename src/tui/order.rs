@@ -88,8 +88,8 @@ impl App {
 /// The surface that a node touches, or the first one that it can touch.
 fn surface(slave: usize, view: &View) -> Option<usize> {
     let spot = view.frame().state.nodes.get(slave)?.spot;
-    let first = || view.model.contacts[slave].surfaces.first().copied();
-    spot.map(|spot| spot.surface).or_else(first)
+    spot.map(|spot| spot.surface)
+        .or_else(|| view.model.contacts[slave].surfaces.first().copied())
 }
 
 /// The smallest margin of a node: forces relative to the scene's force, lengths relative to its length.

@@ -110,8 +110,9 @@ fn shapes(buffer: &Buffer, colours: Colours) -> (Vec<Shape>, (f64, f64)) {
             MARGIN + CELL.1 * f64::from(y),
         )
     };
-    let cells = |y: u16| (area.left()..area.right()).map(move |x| (x, y));
-    let all: Vec<_> = (area.top()..area.bottom()).flat_map(cells).collect();
+    let all: Vec<_> = (area.top()..area.bottom())
+        .flat_map(|y| (area.left()..area.right()).map(move |x| (x, y)))
+        .collect();
     for &(x, y) in &all {
         let (_, ground) = palette.colours(&buffer[(x, y)]);
         if ground != palette.ground {

@@ -122,7 +122,10 @@ fn right_answers_follow_the_scene_and_stand_in_no_file() {
 fn a_wrong_answer_is_told_with_the_numbers_of_the_decision() {
     let mut debugger = taught("oscillation");
     debugger.type_keys("Space s");
-    assert_eq!(tutor(&debugger).question().unwrap().kind, AnswerKind::Mode);
+    assert_eq!(
+        tutor(&debugger).question().unwrap().kind(),
+        AnswerKind::Mode
+    );
     let last = |debugger: &Debugger| tutor(debugger).page().last().cloned().unwrap();
     debugger.type_keys("a s");
     let hint = "No. Look at row free of Table 2: g = -0.0065 < 0. On a rough floor only one mode follows when g < 0.";

@@ -39,8 +39,10 @@ pub struct Report {
 impl Report {
     /// Number of failed checks.
     pub fn failed(&self) -> usize {
-        let fails = |check: &&CheckResult| matches!(check.verdict, Verdict::Fails(_));
-        self.checks.iter().filter(fails).count()
+        self.checks
+            .iter()
+            .filter(|check| matches!(check.verdict, Verdict::Fails(_)))
+            .count()
     }
 
     /// The report as text.

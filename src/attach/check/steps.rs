@@ -95,8 +95,10 @@ fn is_retry(before: &State, state: &State) -> bool {
 /// How many increments were accepted, and how many were given up.
 fn increments(states: &[State]) -> String {
     let ended = |levels: &[EndedLevel]| {
-        let of = |state: &&State| levels.contains(&state.ended);
-        states.iter().filter(of).count()
+        states
+            .iter()
+            .filter(|state| levels.contains(&state.ended))
+            .count()
     };
     let accepted = ended(&[EndedLevel::Increment, EndedLevel::Done]);
     let given_up = ended(&[EndedLevel::Failure]);

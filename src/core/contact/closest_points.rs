@@ -62,12 +62,15 @@ pub fn find(
 ) {
     feet.clear();
     // Nodes lie on the curves, so none is closer than the closest point, and few elements reach that far.
-    let chains = candidates.iter().map(|&surface| &surfaces[surface]);
-    let nodes = chains
+    let reach = candidates
+        .iter()
+        .map(|&surface| &surfaces[surface])
         .filter(|chain| !chain.endless)
-        .flat_map(|chain| chain.elements.iter().flatten());
-    let squares = nodes.map(|&n| squared(minus(point, positions[n])));
-    let reach = squares.fold(f64::INFINITY, f64::min).sqrt() + slack;
+        .flat_map(|chain| chain.elements.iter().flatten())
+        .map(|&n| squared(minus(point, positions[n])))
+        .fold(f64::INFINITY, f64::min)
+        .sqrt()
+        + slack;
     let mut least = f64::INFINITY;
     for &surface in candidates {
         let chain = &surfaces[surface];

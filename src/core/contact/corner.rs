@@ -126,13 +126,15 @@ fn beyond_hull(force: [f64; 2], sides: [&Side; 2], signs: &[f64]) -> f64 {
     // The hull of the starts has edges along the mean normal and across it. Where the rays are nearly parallel, only these
     // edges detect tension.
     let mean = unit(add(sides[0].normal, sides[1].normal, 1.0));
-    let lines = rays().chain(mean).chain(mean.map(tangent));
-    let bounds = lines.flat_map(|line| [tangent(line), tangent(line).map(|x| -x)]);
-    let bounds = bounds.filter(|&u| rays().all(|ray| dot(u, ray) <= PERPENDICULAR));
-    bounds.fold(f64::NEG_INFINITY, |worst, u| {
-        let reach = starts().fold(f64::NEG_INFINITY, |most, start| most.max(dot(u, start)));
-        worst.max(dot(u, force) - reach)
-    })
+    rays()
+        .chain(mean)
+        .chain(mean.map(tangent))
+        .flat_map(|line| [tangent(line), tangent(line).map(|x| -x)])
+        .filter(|&u| rays().all(|ray| dot(u, ray) <= PERPENDICULAR))
+        .fold(f64::NEG_INFINITY, |worst, u| {
+            let reach = starts().fold(f64::NEG_INFINITY, |most, start| most.max(dot(u, start)));
+            worst.max(dot(u, force) - reach)
+        })
 }
 
 /// Splits `force` (Cartesian) into two forces within the cones of their sides, with the least sum of squares, because friction
@@ -160,11 +162,13 @@ pub fn split(force: [f64; 2], sides: [&Side; 2]) -> Option<[[f64; 2]; 2]> {
     };
     let feet = bounds.iter().map(|(a, b)| a.map(|x| x * b));
     let meets = bounds.iter().enumerate().flat_map(|(k, one)| {
-        let rest = bounds[k + 1..].iter();
-        rest.filter_map(move |other| crossing(*one, *other))
+        bounds[k + 1..]
+            .iter()
+            .filter_map(move |other| crossing(*one, *other))
     });
-    let all = std::iter::once([0.0; 2]).chain(feet).chain(meets);
-    let d = all
+    let d = std::iter::once([0.0; 2])
+        .chain(feet)
+        .chain(meets)
         .filter(|d| holds(*d))
         .min_by(|a, b| dot(*a, *a).total_cmp(&dot(*b, *b)))?;
     Some([add(half, d, 1.0), add(half, d, -1.0)])

@@ -197,14 +197,14 @@ impl Judge {
             });
         };
         let over = |feet: &[ClosestPoint], point: [f64; 2]| {
-            let mut feet = feet.iter();
-            feet.find(|foot| {
-                let surface = &seen.surfaces[foot.spot.surface];
-                let element = SurfaceElement::from_surface(surface, foot.spot.element);
-                let is_over = pressed || !element.only_holds(foot.spot.xi);
-                is_over && !is_past_end(foot, point, seen)
-            })
-            .copied()
+            feet.iter()
+                .find(|foot| {
+                    let surface = &seen.surfaces[foot.spot.surface];
+                    let element = SurfaceElement::from_surface(surface, foot.spot.element);
+                    let is_over = pressed || !element.only_holds(foot.spot.xi);
+                    is_over && !is_past_end(foot, point, seen)
+                })
+                .copied()
         };
         let mut foot = over(&self.feet, point);
         let mut given = 0.0;
@@ -261,8 +261,10 @@ impl Judge {
             return;
         };
         let gap = signed_gap(&foot, point, seen.surfaces, seen.now);
-        let others = surfaces.iter().copied();
-        let others = others.filter(|&other| other != foot.spot.surface);
+        let others = surfaces
+            .iter()
+            .copied()
+            .filter(|&other| other != foot.spot.surface);
         let through = through(seen, slave, others, near, &mut self.others);
         if through > near {
             let numbers = JudgedNumbers {
@@ -408,8 +410,9 @@ impl Judge {
             .iter()
             .map(|side| on_side(&seen.scales, force, side));
         let pairs = self.sides.iter().enumerate().flat_map(|(k, one)| {
-            let rest = self.sides[k + 1..].iter();
-            rest.map(move |other| in_corner(seen.surfaces, &seen.scales, force, [one, other]))
+            self.sides[k + 1..]
+                .iter()
+                .map(move |other| in_corner(seen.surfaces, &seen.scales, force, [one, other]))
         });
         let best = single.chain(pairs).reduce(|best, next| {
             if next.worst() < best.worst() {
@@ -456,16 +459,18 @@ fn through(
 /// ξ (±1) of the end of the spot's chain that is within `near` (length) of a point. `None` away from the ends.
 fn end_at(seen: &JudgedState, point: [f64; 2], spot: SurfacePoint, near: f64) -> Option<f64> {
     let surface = &seen.surfaces[spot.surface];
-    let ends = [-1.0, 1.0].into_iter().filter(|_| !surface.endless);
-    ends.filter(|&xi| {
-        let at = place(
-            SurfaceElement::from_surface(surface, spot.element),
-            seen.now,
-            xi,
-        );
-        length(minus(point, at)) <= near
-    })
-    .find(|&xi| beyond_border(seen.surfaces, SurfacePoint { xi, ..spot }).is_none())
+    [-1.0, 1.0]
+        .into_iter()
+        .filter(|_| !surface.endless)
+        .filter(|&xi| {
+            let at = place(
+                SurfaceElement::from_surface(surface, spot.element),
+                seen.now,
+                xi,
+            );
+            length(minus(point, at)) <= near
+        })
+        .find(|&xi| beyond_border(seen.surfaces, SurfacePoint { xi, ..spot }).is_none())
 }
 
 /// A side at a surface point. `None` if dx/dξ = 0.

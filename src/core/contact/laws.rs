@@ -153,8 +153,10 @@ impl Verdict {
 
     /// The worst place for a law. `None` if it did not apply.
     pub fn of(&self, law: JudgedLaw) -> Option<Finding> {
-        let mut all = self.findings().chain(&self.work);
-        all.find(|found| found.law == law).copied()
+        self.findings()
+            .chain(&self.work)
+            .find(|found| found.law == law)
+            .copied()
     }
 
     /// The worst place for every law that applied, with the laws of bonds last.
@@ -164,8 +166,7 @@ impl Verdict {
 
     /// The finding with the largest amount relative to its tolerance. `None` if no law applied.
     pub fn largest(&self) -> Option<Finding> {
-        let all = self.findings().copied();
-        all.reduce(|worst, next| {
+        self.findings().copied().reduce(|worst, next| {
             if next.times() > worst.times() {
                 next
             } else {

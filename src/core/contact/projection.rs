@@ -159,9 +159,10 @@ pub fn sharpen(
     let element = SurfaceElement::from_surface(surface, spot.element);
     let places = ElementPositions::from_nodes(element.nodes, positions);
     let xi = descend(element, &places, slave, spot.xi);
-    match (xi - spot.xi).abs() <= NEXT_TO {
-        true => SurfacePoint { xi, ..spot },
-        false => spot,
+    if (xi - spot.xi).abs() <= NEXT_TO {
+        SurfacePoint { xi, ..spot }
+    } else {
+        spot
     }
 }
 
@@ -172,14 +173,15 @@ fn nearest_node(
     candidates: &[usize],
     positions: &[[f64; 2]],
 ) -> f64 {
-    let through = candidates.iter().map(|&surface| &surfaces[surface]);
-    let nodes = through
+    let squared = candidates
+        .iter()
+        .map(|&surface| &surfaces[surface])
         .filter(|surface| surface.smooth.is_empty())
-        .flat_map(|surface| surface.elements.iter().flatten());
-    let squared = nodes.map(|&node| {
-        let [x, y] = minus(slave, positions[node]);
-        x * x + y * y
-    });
+        .flat_map(|surface| surface.elements.iter().flatten())
+        .map(|&node| {
+            let [x, y] = minus(slave, positions[node]);
+            x * x + y * y
+        });
     squared.fold(f64::INFINITY, f64::min).sqrt()
 }
 

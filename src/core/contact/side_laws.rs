@@ -54,16 +54,16 @@ pub(super) fn slip_into(
     this: &TouchedSide,
     near: f64,
 ) -> Option<f64> {
-    let mut others = sides
+    sides
         .iter()
-        .filter(|other| other.spot.surface != this.spot.surface);
-    others.find_map(|other| match other.past {
-        SideHistory::Touched(slip) if comes_first(surfaces, other, this) => {
-            (slip > near).then_some(slip)
-        }
-        SideHistory::Touched(slip) => (slip < -near).then_some(slip),
-        _ => None,
-    })
+        .filter(|other| other.spot.surface != this.spot.surface)
+        .find_map(|other| match other.past {
+            SideHistory::Touched(slip) if comes_first(surfaces, other, this) => {
+                (slip > near).then_some(slip)
+            }
+            SideHistory::Touched(slip) => (slip < -near).then_some(slip),
+            _ => None,
+        })
 }
 
 /// Evaluates the laws on a single side.

@@ -123,15 +123,17 @@ impl ContactState {
 
 /// Number of these contacts, given by index, in a mode.
 pub fn in_mode(contacts: &[ContactState], of: &[usize], mode: Mode) -> f64 {
-    let has = |contact: &&usize| contacts[**contact].mode == mode;
-    of.iter().filter(has).count() as f64
+    of.iter()
+        .filter(|contact| contacts[**contact].mode == mode)
+        .count() as f64
 }
 
 /// The largest drift of these contacts, given by index, with its sign.
 pub fn largest_drift(contacts: &[ContactState], of: &[usize]) -> f64 {
-    let drifts = of.iter().map(|&contact| contacts[contact].drift);
-    drifts.fold(
-        0.0,
-        |most: f64, d| if d.abs() > most.abs() { d } else { most },
-    )
+    of.iter()
+        .map(|&contact| contacts[contact].drift)
+        .fold(
+            0.0,
+            |most: f64, d| if d.abs() > most.abs() { d } else { most },
+        )
 }

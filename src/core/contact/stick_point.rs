@@ -53,8 +53,7 @@ pub fn pierced(
 pub fn room(surface: &Surface, spot: SurfacePoint, positions: &[[f64; 2]]) -> [Option<f64>; 2] {
     [-1.0, 1.0].map(|xi| {
         let end = SurfacePoint { xi, ..spot };
-        let way = || distance(surface, spot, end, positions).abs();
-        has_kink(surface, end, positions).then(way)
+        has_kink(surface, end, positions).then(|| distance(surface, spot, end, positions).abs())
     })
 }
 
@@ -115,8 +114,12 @@ fn length(element: SurfaceElement<'_>, from: f64, to: f64, positions: &[[f64; 2]
     let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
     let places = ElementPositions::from_nodes(element.nodes, positions);
     let slopes = element.slopes_at(POINTS.map(|(x, _)| middle + half * x));
-    let speeds = slopes.iter().map(|slopes| span(places.sum(slopes)));
-    let sum: f64 = speeds.zip(POINTS).map(|(speed, (_, w))| w * speed).sum();
+    let sum: f64 = slopes
+        .iter()
+        .map(|slopes| span(places.sum(slopes)))
+        .zip(POINTS)
+        .map(|(speed, (_, w))| w * speed)
+        .sum();
     half * sum
 }
 

@@ -272,9 +272,10 @@ pub fn decide(numbers: &Numbers, ties: &Ties) -> Decision {
                 limit - shear,
                 ties.force,
             );
-            match ties.switches(&test, false) {
-                true => (Mode::Sliding, Rule::FixedSlides, [Some(opens), Some(test)]),
-                false => (Mode::Fixed, Rule::FixedStays, [Some(opens), Some(test)]),
+            if ties.switches(&test, false) {
+                (Mode::Sliding, Rule::FixedSlides, [Some(opens), Some(test)])
+            } else {
+                (Mode::Fixed, Rule::FixedStays, [Some(opens), Some(test)])
             }
         }
         Mode::Sliding => {
@@ -286,9 +287,10 @@ pub fn decide(numbers: &Numbers, ties: &Ties) -> Decision {
             #[cfg(mutants)]
             let slip = crate::mutants::pick("sliding-sticks-by-unsigned-slip", slip, numbers.slip);
             let test = ties.test(TestedQuantity::Slip, slip, 0.0, slip, ties.length);
-            match ties.switches(&test, false) {
-                true => (Mode::Fixed, Rule::SlidingSticks, [Some(opens), Some(test)]),
-                false => (Mode::Sliding, Rule::SlidingStays, [Some(opens), Some(test)]),
+            if ties.switches(&test, false) {
+                (Mode::Fixed, Rule::SlidingSticks, [Some(opens), Some(test)])
+            } else {
+                (Mode::Sliding, Rule::SlidingStays, [Some(opens), Some(test)])
             }
         }
     };

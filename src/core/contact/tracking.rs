@@ -96,8 +96,10 @@ impl Ground<'_> {
             if !was_held && node.corner.is_none() && slave.surfaces.len() > 1 {
                 self.meet_between(node, slave, at);
             }
-            let flexible = |spot: SurfacePoint| !self.surfaces[spot.surface].gives.is_empty();
-            if node.spot.is_some_and(flexible) {
+            if node
+                .spot
+                .is_some_and(|spot| !self.surfaces[spot.surface].gives.is_empty())
+            {
                 leave_border(self.surfaces, node);
             }
         }
@@ -153,17 +155,20 @@ impl Ground<'_> {
         // A node that presses on an element with local flexibility penetrates by the local deflection.
         let gives = point_force::of(surface, spot).is_some();
         let touches = slave.bond.is_hard() && slave.overlap == 0.0 && !gives;
-        Some(match touches {
-            true => spot,
-            false => sharpen(at, self.surfaces, spot, self.positions),
+        Some(if touches {
+            spot
+        } else {
+            sharpen(at, self.surfaces, spot, self.positions)
         })
     }
 
     /// Keeps a tied node at its point of the surface; its force keeps its direction, because the surface may have rotated.
     fn stay_tied(&self, node: &mut ContactState, slave: &Contact, at: [f64; 2]) {
         node.mode = Mode::Fixed;
-        let found = || project(at, self.surfaces, &slave.surfaces, self.positions, None);
-        let Some(spot) = node.anchor.or_else(found) else {
+        let Some(spot) = node
+            .anchor
+            .or_else(|| project(at, self.surfaces, &slave.surfaces, self.positions, None))
+        else {
             node.drift = 0.0;
             return;
         };
@@ -194,11 +199,10 @@ impl Ground<'_> {
             return true;
         }
         let half = self.half_angle(spot, node.f_n);
-        let still = |half: &f64| {
+        node.corner = half.filter(|half| {
             let is_corner = *half > 0.0;
             is_corner == (was > 0.0) && (is_corner || corner::holds(friction, *half))
-        };
-        node.corner = half.filter(still);
+        });
         node.corner.is_some()
     }
 
@@ -261,8 +265,9 @@ impl Ground<'_> {
     /// n (unit) at a border of one chain: the mean of both sides' normals.
     fn border_normal(&self, border: SurfacePoint, f_n: f64, over: &Projection) -> [f64; 2] {
         let rigid_lines = self.surfaces[border.surface].gives.is_empty();
-        let sides = self.sides(border, f_n).filter(|_| !rigid_lines);
-        sides.map_or(over.normal, |[before, behind]| mean_normal(before, behind))
+        self.sides(border, f_n)
+            .filter(|_| !rigid_lines)
+            .map_or(over.normal, |[before, behind]| mean_normal(before, behind))
     }
 
     /// Records that a node has moved to another element, and holds it in the corner if it slides back to the one that it left.

@@ -154,8 +154,10 @@ type Sample = (f64, [f64; MAX_NODES]);
 pub fn samples(m: usize) -> &'static [Sample] {
     static TABLE: LazyLock<Vec<Vec<Sample>>> = LazyLock::new(|| {
         let of = |m: usize| {
-            let places = (0..2 * m - 1).map(|k| node(2 * m - 1, k));
-            places.map(|xi| (xi, shape(m, xi).n)).collect()
+            (0..2 * m - 1)
+                .map(|k| node(2 * m - 1, k))
+                .map(|xi| (xi, shape(m, xi).n))
+                .collect()
         };
         (0..=MAX_NODES)
             .map(|m| if m < 2 { Vec::new() } else { of(m) })

@@ -30,8 +30,7 @@ pub enum BodyKind {
 impl Body {
     /// Whether it is a body of revolution.
     pub fn is_axisymmetric(&self) -> bool {
-        let round = |m: &Elastic| m.plane == Plane::Axisymmetric;
-        matches!(&self.kind, BodyKind::Solid(solid) if solid.materials.iter().any(round))
+        matches!(&self.kind, BodyKind::Solid(solid) if solid.materials.iter().any(|m| m.plane == Plane::Axisymmetric))
     }
 
     /// Whether equilibrium of the whole body is written on its undeformed shape ([`Update::Small`]).

@@ -49,11 +49,11 @@ impl Friction {
     pub fn from_coefficient(mu: f64, cohesion: f64) -> Friction {
         let near = mu.atan().to_degrees();
         let of = |angle| Friction { angle, cohesion };
-        let neighbours = (0..=NEAR).flat_map(|k| {
-            let bits = near.to_bits();
-            [bits.saturating_sub(k), bits.saturating_add(k)].map(f64::from_bits)
-        });
-        let exact = neighbours
+        let exact = (0..=NEAR)
+            .flat_map(|k| {
+                let bits = near.to_bits();
+                [bits.saturating_sub(k), bits.saturating_add(k)].map(f64::from_bits)
+            })
             .map(of)
             .filter(|friction| friction.coefficient() == mu);
         exact

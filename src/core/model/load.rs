@@ -79,8 +79,7 @@ impl Factor {
         if load_factor < first.0 {
             return 0.0;
         }
-        let mut pieces = points.windows(2);
-        let piece = pieces.find(|pair| load_factor <= pair[1].0);
+        let piece = points.windows(2).find(|pair| load_factor <= pair[1].0);
         piece.map_or(0.0, |pair| {
             (pair[1].1 - pair[0].1) / (pair[1].0 - pair[0].0)
         })

@@ -16,11 +16,10 @@ pub fn boundary<'a>(
         .map(|(nodes, face)| ends(nodes, face))
         .collect();
     walked.sort_unstable();
-    let is_outer = |(nodes, face): &(&[usize], &[usize])| {
+    let outer = places.filter(|(nodes, face)| {
         let (first, last) = ends(nodes, face);
         walked.binary_search(&(last, first)).is_err()
-    };
-    let outer = places.filter(is_outer);
+    });
     in_order(
         outer
             .map(|(nodes, face)| face.iter().map(|&place| nodes[place]).collect())

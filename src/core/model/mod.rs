@@ -144,9 +144,10 @@ impl RunFinding {
 
     /// The cure with its lines.
     pub fn advice(&self) -> String {
-        match self.lines.is_empty() {
-            true => self.cure.clone(),
-            false => format!("{}: {}", self.cure, self.shown_lines()),
+        if self.lines.is_empty() {
+            self.cure.clone()
+        } else {
+            format!("{}: {}", self.cure, self.shown_lines())
         }
     }
 }
@@ -267,9 +268,10 @@ pub fn diagonal<'a>(nodes: impl Iterator<Item = &'a Node>) -> f64 {
         ]
     });
     let size = [high[0] - low[0], high[1] - low[1]];
-    match size[0] >= 0.0 {
-        true => size[0].hypot(size[1]),
-        false => 0.0,
+    if size[0] >= 0.0 {
+        size[0].hypot(size[1])
+    } else {
+        0.0
     }
 }
 
@@ -325,8 +327,9 @@ impl Model {
 
     /// Whether any body is a solid.
     pub fn has_solids(&self) -> bool {
-        let mut bodies = self.bodies.iter();
-        bodies.any(|body| matches!(body.kind, BodyKind::Solid(_)))
+        self.bodies
+            .iter()
+            .any(|body| matches!(body.kind, BodyKind::Solid(_)))
     }
 
     /// Whether old factors are kept where they help, with this choice of when to factor.
@@ -378,6 +381,19 @@ impl Model {
     pub fn has_dead_loads(&self) -> bool {
         let small = |body: usize| self.bodies[body].is_small();
         self.pressures.iter().all(|p| p.expands.is_some_and(small))
+    }
+
+    /// Initial position of the node of each equation; the origin for internal unknowns of bodies.
+    pub fn positions_of_equations(&self) -> Vec<[f64; 2]> {
+        let mut positions = vec![[0.0; 2]; self.dofs.equations];
+        let dofs = self.dofs.first.iter().zip(&self.dofs.count);
+        for (node, (&first, &count)) in self.nodes.iter().zip(dofs) {
+            let own = &self.dofs.equation[first..first + usize::from(count)];
+            for &equation in own.iter().flatten() {
+                positions[equation] = node.at;
+            }
+        }
+        positions
     }
 
     /// Turns a scene of contacts ([`Model::from_contacts`]) into one in space; `heights` are the z of its nodes.

@@ -16,12 +16,15 @@ impl Search for CensusStrategy {
             .filter(|&place| problem.nodes[place].choices().len() > 1)
             .collect();
         let problem = problem.reduced(&undecided).ok_or(NotFound::Loose)?;
-        let too_many = |census::TooMany { nodes }| NotFound::TooMany { nodes };
-        let mut census = census::census(&problem).map_err(too_many)?;
+        let mut census = census::census(&problem)
+            .map_err(|census::TooMany { nodes }| NotFound::TooMany { nodes })?;
         let differs = |(place, node): (&usize, &NodeAnswer)| asked.brought[*place] != node.assumed;
         census.answers.sort_by_key(|found| {
-            let all = undecided.iter().zip(&found.answer.nodes);
-            all.filter(|&pair| differs(pair)).count()
+            undecided
+                .iter()
+                .zip(&found.answer.nodes)
+                .filter(|&pair| differs(pair))
+                .count()
         });
         let Some(found) = census.answers.get(asked.start) else {
             return Err(match census.answers.len() {

@@ -26,9 +26,10 @@ struct CopositivePath {
 impl CopositivePath {
     /// Performs the pivots of a minor iteration.
     fn go(&mut self) {
-        let most = match self.step < self.pivoting.tableau.rows() {
-            true => 1,
-            false => STRIDE,
+        let most = if self.step < self.pivoting.tableau.rows() {
+            1
+        } else {
+            STRIDE
         };
         let done = (0..most)
             .map_while(|_| self.pivoting.tableau.pivot())
@@ -57,8 +58,9 @@ impl Search for CopositiveStrategy {
             let pivots = pivoting.tableau.pivots();
             return Err(NotFound::Astray { pivots }.into());
         }
-        let nodes = (0..asked.brought.len()).map(|k| (pivoting.assumed(k), pivoting.numbers(k)));
-        let mut nodes: Vec<_> = nodes.collect();
+        let mut nodes: Vec<_> = (0..asked.brought.len())
+            .map(|k| (pivoting.assumed(k), pivoting.numbers(k)))
+            .collect();
         let solved = ended == Some(PathEnd::Solved);
         if solved {
             let problem = (asked.problem)().ok_or(NotFound::NotCondensed)?;

@@ -78,16 +78,18 @@ impl SweepState {
     /// Performs the sweeps of a minor iteration; returns whether the modes have been stable long enough and differ from the last
     /// proposal.
     fn go(&mut self, nodes: usize) -> bool {
-        match self.sweep.is_given() {
-            true => self.reduce(),
-            false => self.sweep_on(SWEEPS),
+        if self.sweep.is_given() {
+            self.reduce()
+        } else {
+            self.sweep_on(SWEEPS)
         }
         self.done += 1;
         self.step += 1;
         let does: Vec<AssumedMode> = (0..nodes).map(|k| self.sweep.assumed(k)).collect();
-        self.unanswered = match self.sweep.is_answered() {
-            true => 0,
-            false => self.unanswered + 1,
+        self.unanswered = if self.sweep.is_answered() {
+            0
+        } else {
+            self.unanswered + 1
         };
         self.lasted = if does == self.does && self.unanswered == 0 {
             self.lasted + 1
@@ -132,13 +134,12 @@ impl SweepState {
 
     /// Whether further sweeps would change nothing, or the limit is reached.
     fn is_over(&self) -> bool {
-        match self.sweep.is_given() {
-            true => self.sweeps >= MOST_GIVEN && !self.is_settled(),
-            false => {
-                self.change == 0.0 && self.does == self.found
-                    || self.done >= MOST
-                    || self.unanswered >= UNANSWERED
-            }
+        if self.sweep.is_given() {
+            self.sweeps >= MOST_GIVEN && !self.is_settled()
+        } else {
+            self.change == 0.0 && self.does == self.found
+                || self.done >= MOST
+                || self.unanswered >= UNANSWERED
         }
     }
 }
@@ -173,17 +174,19 @@ impl Search for GaussSeidel {
                 false => Rule::Sweeps,
             },
             cover: going.change,
-            covers: match going.sweep.is_given() {
-                true => TestedQuantity::Error,
-                false => TestedQuantity::Change,
+            covers: if going.sweep.is_given() {
+                TestedQuantity::Error
+            } else {
+                TestedQuantity::Change
             },
             bound: None,
-            next: match lasts {
-                true => SearchProgress::Found { start: asked.start },
-                false => SearchProgress::At {
+            next: if lasts {
+                SearchProgress::Found { start: asked.start }
+            } else {
+                SearchProgress::At {
                     start: asked.start,
                     step: going.step,
-                },
+                }
             },
         };
         *asked.kept = Some(going);

@@ -402,14 +402,17 @@ fn one_of<T: Copy>(
     };
     let all: Vec<T> = all.into_iter().collect();
     let found = all.iter().find(|&&one| spell(one) == *word);
-    let begun = || all.iter().find(|&&one| spell(one).starts_with(word));
-    found.or_else(begun).copied().map(Some).ok_or_else(|| {
-        let (word, all) = (
-            word.to_string(),
-            all.iter().map(|&one| spell(one)).collect(),
-        );
-        ParseError::NoneOf { word, all }
-    })
+    found
+        .or_else(|| all.iter().find(|&&one| spell(one).starts_with(word)))
+        .copied()
+        .map(Some)
+        .ok_or_else(|| {
+            let (word, all) = (
+                word.to_string(),
+                all.iter().map(|&one| spell(one)).collect(),
+            );
+            ParseError::NoneOf { word, all }
+        })
 }
 
 /// The number of the monitor with this name.

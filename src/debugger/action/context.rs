@@ -130,10 +130,9 @@ pub(super) fn find(word: &str, context: &Context) -> Result<usize, ParseError> {
     }
     let model = model(context)?;
     let count = model.contacts.len();
-    let hit = |slave: &usize| model.nodes[model.contacts[*slave].node].name.contains(word);
     (1..=count)
         .map(|step| (context.selected + step) % count)
-        .find(hit)
+        .find(|slave| model.nodes[model.contacts[*slave].node].name.contains(word))
         .ok_or_else(|| ParseError::NotFound {
             word: word.to_string(),
             slaves: some_names(model),

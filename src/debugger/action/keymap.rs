@@ -164,14 +164,13 @@ impl Keymap {
     /// The action of a key.
     pub fn by_key(&self, key: &str) -> Option<&'static ActionEntry> {
         let changed = |entry: &&ActionEntry| self.changed.contains_key(entry.name);
-        let moved = || {
+        by_key(key).filter(|entry| !changed(entry)).or_else(|| {
             let (name, _) = self
                 .changed
                 .iter()
                 .find(|(_, keys)| keys.iter().any(|own| own == key))?;
             ACTIONS.iter().find(|entry| entry.name == *name)
-        };
-        by_key(key).filter(|entry| !changed(entry)).or_else(moved)
+        })
     }
 
     /// Whether any key differs from the table.

@@ -6,7 +6,7 @@ use super::meaning::{Action, ChartOf, Page, Question, Ui};
 use super::table::{ActionEntry, Verb};
 use crate::record::export;
 use crate::{Command, ExportScope};
-use stickslip_core::{Capabilities, Friction, Intervention, Mode};
+use stickslip_core::{Capabilities, Intervention, Mode};
 
 /// What an action needs of the current solver.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -40,11 +40,13 @@ enum Need {
     Attached,
 }
 
+use Need::*;
+
 impl Need {
     /// Checks the need; `None` is our own solver.
     fn check(self, solver: Option<&Capabilities>) -> Result<(), String> {
         match (solver, self) {
-            (None, Need::Attached) => {
+            (None, Attached) => {
                 Err("only attached solvers (`stickslip attach`) have a log and parameters".into())
             }
             (None, _) => Ok(()),
@@ -61,46 +63,46 @@ impl Need {
             hold,
         };
         match self {
-            Need::Force => takes(force(false)),
-            Need::Hold => takes(force(true)),
-            Need::ForceOrHold => takes(force(false)).or_else(|why| takes(force(true)).map_err(|_| why)),
-            Need::Increment => takes(Intervention::Increment(1.0)),
-            Need::Friction if !offers.friction => has(false, "a friction change"),
-            Need::Friction => takes(Intervention::Friction(Friction::default())),
-            Need::Cohesion => has(offers.cohesion, "a cohesion change"),
-            Need::Settings => has(offers.settings, "settings of the two-level method"),
-            Need::Parameters => has(!offers.parameters.is_empty(), "parameters that can be set"),
-            Need::Cures if offers.cures => Ok(()),
-            Need::Problem | Need::Cures => has(offers.problem, "its interface problem"),
-            Need::Answers => has(offers.problem, "its interface problem").and_then(|()| takes(force(false))),
-            Need::Chart => Err(
+            Force => takes(force(false)),
+            Hold => takes(force(true)),
+            ForceOrHold => takes(force(false)).or_else(|why| takes(force(true)).map_err(|_| why)),
+            Increment => takes(Intervention::Increment(1.0)),
+            Friction if !offers.friction => has(false, "a friction change"),
+            Friction => takes(Intervention::Friction(Default::default())),
+            Cohesion => has(offers.cohesion, "a cohesion change"),
+            Settings => has(offers.settings, "settings of the two-level method"),
+            Parameters => has(!offers.parameters.is_empty(), "parameters that can be set"),
+            Cures if offers.cures => Ok(()),
+            Problem | Cures => has(offers.problem, "its interface problem"),
+            Answers => has(offers.problem, "its interface problem").and_then(|()| takes(force(false))),
+            Chart => Err(
                 "charts can be measured only on scenes that stickslip solves itself (:chart FILE shows a table)".into(),
             ),
-            Need::Scene => Err(
+            Scene => Err(
                 "the scene is known only to the solver; `export --frozen` writes its interface problem, if the solver offers it"
                     .into(),
             ),
-            Need::Journal => offers.past.map_or(Ok(()), |record| Err(format!("{record}: it does not need a journal"))),
-            Need::Attached => Ok(()),
+            Journal => offers.past.map_or(Ok(()), |record| Err(format!("{record}: it does not need a journal"))),
+            Attached => Ok(()),
         }
     }
 
     fn from_verb(verb: &Verb) -> Option<Need> {
         Some(match verb {
-            Verb::Force { hold: false } => Need::ForceOrHold,
-            Verb::Force { hold: true } => Need::Hold,
-            Verb::Release => Need::ForceOrHold,
-            Verb::Increment => Need::Increment,
+            Verb::Force { hold: false } => ForceOrHold,
+            Verb::Force { hold: true } => Hold,
+            Verb::Release => ForceOrHold,
+            Verb::Increment => Increment,
             Verb::SetPath(path) => return Need::from_path(path),
-            Verb::Set => Need::Parameters,
-            Verb::StartFrom => Need::Answers,
-            Verb::Apply | Verb::Census => Need::Problem,
+            Verb::Set => Parameters,
+            Verb::StartFrom => Answers,
+            Verb::Apply | Verb::Census => Problem,
             Verb::Export {
                 what: ExportScope::Core,
                 ..
-            } => Need::Problem,
-            Verb::Chart => Need::Chart,
-            Verb::Journal => Need::Journal,
+            } => Problem,
+            Verb::Chart => Chart,
+            Verb::Journal => Journal,
             Verb::Do(ui) => return Need::from_ui(ui),
             _ => return None,
         })
@@ -108,43 +110,43 @@ impl Need {
 
     fn from_path(path: &str) -> Option<Need> {
         match path {
-            "friction.angle" => Some(Need::Friction),
-            "friction.cohesion" => Some(Need::Cohesion),
-            path if path.starts_with("settings.") => Some(Need::Settings),
+            "friction.angle" => Some(Friction),
+            "friction.cohesion" => Some(Cohesion),
+            path if path.starts_with("settings.") => Some(Settings),
             _ => None,
         }
     }
 
     fn from_ui(ui: &Ui) -> Option<Need> {
         Some(match ui {
-            Ui::Ask(Question::Mode) => Need::ForceOrHold,
-            Ui::Ask(Question::Increment) => Need::Increment,
-            Ui::Page(Page::Remedies) => Need::Cures,
-            Ui::Apply(_) => Need::Problem,
-            Ui::StartFrom(_) => Need::Answers,
-            Ui::Chart(ChartOf::Scene | ChartOf::Settings(_)) => Need::Chart,
-            Ui::Log | Ui::Parameters => Need::Attached,
+            Ui::Ask(Question::Mode) => ForceOrHold,
+            Ui::Ask(Question::Increment) => Increment,
+            Ui::Page(Page::Remedies) => Cures,
+            Ui::Apply(_) => Problem,
+            Ui::StartFrom(_) => Answers,
+            Ui::Chart(ChartOf::Scene | ChartOf::Settings(_)) => Chart,
+            Ui::Log | Ui::Parameters => Attached,
             _ => return None,
         })
     }
 
     fn from_command(command: &Command) -> Option<Need> {
         Some(match command {
-            Command::Force { hold: false, .. } => Need::Force,
-            Command::Force { hold: true, .. } => Need::Hold,
-            Command::Release { .. } => Need::ForceOrHold,
-            Command::Increment(_) => Need::Increment,
+            Command::Force { hold: false, .. } => Force,
+            Command::Force { hold: true, .. } => Hold,
+            Command::Release { .. } => ForceOrHold,
+            Command::Increment(_) => Increment,
             Command::Set { path, .. } => return Need::from_path(path),
-            Command::Assume(_) => Need::Answers,
-            Command::Census(_) | Command::Remedies => Need::Problem,
-            Command::Journal(_) => Need::Journal,
+            Command::Assume(_) => Answers,
+            Command::Census(_) | Command::Remedies => Problem,
+            Command::Journal(_) => Journal,
             Command::Export {
                 what: ExportScope::Core | ExportScope::Whole,
                 ..
-            } => Need::Problem,
+            } => Problem,
             Command::Export { file, .. } => match export::kind(file) {
-                Ok(kind) if kind.extension == "ron" => Need::Scene,
-                Ok(kind) if kind.may_be_frozen => Need::Problem,
+                Ok(kind) if kind.extension == "ron" => Scene,
+                Ok(kind) if kind.may_be_frozen => Problem,
                 _ => return None,
             },
             _ => return None,

@@ -25,8 +25,8 @@ pub const FINER: &str = "a finer mesh, with smaller kinks (refine=2)";
 
 /// What to do about a failure, in order of preference.
 pub fn advice(model: &Model, state: &State, failure: &Failure) -> Vec<Advice> {
-    let turned = turned(model).into_iter();
-    let reverse: Vec<Advice> = turned
+    let reverse: Vec<Advice> = turned(model)
+        .into_iter()
         .filter_map(|found| Remedy::from_kind(RemedyKind::Reverse(found.surface), model, state))
         .map(Advice::Remedy)
         .collect();
@@ -38,8 +38,7 @@ pub fn advice(model: &Model, state: &State, failure: &Failure) -> Vec<Advice> {
         .into_iter()
         .filter_map(|kind| Remedy::from_kind(kind, model, state))
         .map(Advice::Remedy);
-    let by_hand = by_hand(state, failure).iter().copied();
-    let by_hand = by_hand.map(Advice::ByHand);
+    let by_hand = by_hand(state, failure).iter().copied().map(Advice::ByHand);
     // A missing support or another load cannot be replaced by any setting.
     let scene_first = matches!(
         failure,
@@ -56,9 +55,10 @@ pub fn advice(model: &Model, state: &State, failure: &Failure) -> Vec<Advice> {
         .into_iter()
         .filter_map(|gaps| Remedy::from_kind(RemedyKind::Gaps(gaps), model, state))
         .map(Advice::Remedy);
-    let rest: Vec<Advice> = match scene_first {
-        true => by_hand.chain(remedies).collect(),
-        false => remedies.chain(finer).chain(by_hand).collect(),
+    let rest: Vec<Advice> = if scene_first {
+        by_hand.chain(remedies).collect()
+    } else {
+        remedies.chain(finer).chain(by_hand).collect()
     };
     let law = Remedy::law(model, state, failure);
     let (first, last) = match law {
@@ -79,13 +79,14 @@ fn kinds(state: &State, failure: &Failure) -> Vec<RemedyKind> {
     let settings = &state.controls.settings;
     let climbs = settings.strategy == Strategy::Ladder;
     // The ladder has tried smaller increments itself.
-    let parts: &[RemedyKind] = match climbs {
-        true => &[RemedyKind::Part(0.37), RemedyKind::Part(0.1)],
-        false => &[
+    let parts: &[RemedyKind] = if climbs {
+        &[RemedyKind::Part(0.37), RemedyKind::Part(0.1)]
+    } else {
+        &[
             RemedyKind::Strategy(Strategy::Ladder),
             RemedyKind::Part(0.5),
             RemedyKind::Part(0.1),
-        ],
+        ]
     };
     let mut all = Vec::new();
     let mut add = |wanted: bool, kinds: &[RemedyKind]| {
@@ -194,16 +195,17 @@ fn by_hand(state: &State, failure: &Failure) -> &'static [&'static str] {
         | Failure::MajorLimit { .. }
         | Failure::Diverged { .. } => &[],
         Failure::Singular(Singular::Rigid { .. }) => {
-            match state.nodes.iter().any(|node| node.mode == Mode::Free) {
-                true => &[
+            if state.nodes.iter().any(|node| node.mode == Mode::Free) {
+                &[
                     "a support against that motion",
                     "slave nodes that start sliding or fixed (slaves, start)",
                     "a prescribed displacement instead of the load, until first contact",
-                ],
-                false => &[
+                ]
+            } else {
+                &[
                     "a support against that motion",
                     "slave nodes that start fixed (slaves, start)",
-                ],
+                ]
             }
         }
         Failure::Singular(Singular::Unexplained) => {

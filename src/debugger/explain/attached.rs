@@ -53,8 +53,10 @@ pub fn examine(
         [] if is_other => census(&mut stepper, &start, stop),
         [] => frozen(&mut stepper, &start, stop),
         some => {
-            let place = |slave: &usize| posed.contacts.iter().position(|known| known == slave);
-            let places: Vec<usize> = some.iter().filter_map(place).collect();
+            let places: Vec<usize> = some
+                .iter()
+                .filter_map(|slave| posed.contacts.iter().position(|known| known == slave))
+                .collect();
             examine_nodes(&mut stepper, &start, &places, stop)
         }
     };

@@ -72,8 +72,10 @@ impl Attempt {
 
     /// The largest relative error (residual or interface) after each major iteration.
     pub fn errors(&self) -> Vec<f64> {
-        let error = |major: &Major| major.after.relative.max(major.after.interface);
-        self.majors.iter().map(error).collect()
+        self.majors
+            .iter()
+            .map(|major| major.after.relative.max(major.after.interface))
+            .collect()
     }
 }
 
@@ -81,11 +83,13 @@ impl Major {
     fn new(stepper: &Stepper, after: Norms) -> Major {
         let (state, dofs) = (stepper.state(), &stepper.model().dofs);
         let largest = stepper.largest_residual().and_then(|(dof, force)| {
-            let has = |node: &usize| {
-                let first = dofs.first[*node];
-                (first..first + usize::from(dofs.count[*node])).contains(&dof)
-            };
-            Some(((0..dofs.first.len()).find(has)?, force))
+            Some((
+                (0..dofs.first.len()).find(|node| {
+                    let first = dofs.first[*node];
+                    (first..first + usize::from(dofs.count[*node])).contains(&dof)
+                })?,
+                force,
+            ))
         });
         let contacts = state.nodes.iter().map(|node| (node.mode, node.spot));
         Major {

@@ -139,9 +139,10 @@ impl Audit {
     fn add(&mut self, event: &Event, verdict: &Verdict, is_marked: bool) {
         self.increments += 1;
         self.marked += u32::from(is_marked);
-        let worst = match is_marked {
-            true => &mut self.worst_marked,
-            false => &mut self.worst,
+        let worst = if is_marked {
+            &mut self.worst_marked
+        } else {
+            &mut self.worst
         };
         let all = verdict.worst.iter().chain(&verdict.bonds);
         for (worst, finding) in worst.iter_mut().zip(all) {
@@ -156,14 +157,18 @@ impl Audit {
 
     /// The laws violated by unmarked increments.
     pub fn broken(&self) -> impl Iterator<Item = &WorstFinding> {
-        let all = self.worst.iter().flatten();
-        all.filter(|found| found.finding.is_broken())
+        self.worst
+            .iter()
+            .flatten()
+            .filter(|found| found.finding.is_broken())
     }
 
     /// The worst finding for a law in unmarked increments.
     pub fn of(&self, law: JudgedLaw) -> Option<&WorstFinding> {
-        let mut all = self.worst.iter().flatten();
-        all.find(|found| found.finding.law == law)
+        self.worst
+            .iter()
+            .flatten()
+            .find(|found| found.finding.law == law)
     }
 }
 
@@ -172,8 +177,10 @@ fn keep_worse(worst: &mut Option<WorstFinding>, found: Option<WorstFinding>) {
     let times = found.finding.times();
     #[cfg(mutants)]
     let times = stickslip_core::mutants::pick("audit-of-the-last-increment", times, f64::INFINITY);
-    let worse = |worst: &WorstFinding| times > worst.finding.times() || times.is_nan();
-    if worst.as_ref().is_none_or(worse) {
+    if worst
+        .as_ref()
+        .is_none_or(|worst| times > worst.finding.times() || times.is_nan())
+    {
         *worst = Some(found);
     }
 }
@@ -221,11 +228,14 @@ fn deepest(model: &Model, u: &[f64]) -> Option<(usize, usize, f64)> {
 /// The outline of a solid as a chain of short segments, with the body on their left.
 fn outline(solid: &Solid, now: &[[f64; 2]]) -> Vec<[[f64; 2]; 2]> {
     let at = |k: usize| -1.0 + 2.0 * k as f64 / POINTS as f64;
-    let lines = solid.edges.iter().flat_map(|nodes| {
-        let edge = SurfaceElement::lagrange(nodes);
-        (0..POINTS).map(move |k| [at(k), at(k + 1)].map(|xi| place(edge, now, xi)))
-    });
-    lines.collect()
+    solid
+        .edges
+        .iter()
+        .flat_map(|nodes| {
+            let edge = SurfaceElement::lagrange(nodes);
+            (0..POINTS).map(move |k| [at(k), at(k + 1)].map(|xi| place(edge, now, xi)))
+        })
+        .collect()
 }
 
 /// Distance of a point from an outline if it is inside; otherwise 0.

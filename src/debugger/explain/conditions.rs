@@ -129,9 +129,12 @@ fn pressures(
 fn scaled(mut arrows: Vec<ConditionArrow>) -> Vec<ConditionArrow> {
     for given in [Given::Load, Given::Motion] {
         let of = |arrow: &&mut ConditionArrow| arrow.given == given;
-        let sizes = arrows.iter_mut().filter(of);
-        let sizes = sizes.map(|arrow| arrow.along[0].hypot(arrow.along[1]));
-        let largest = sizes.filter(|size| size.is_finite()).fold(0.0, f64::max);
+        let largest = arrows
+            .iter_mut()
+            .filter(of)
+            .map(|arrow| arrow.along[0].hypot(arrow.along[1]))
+            .filter(|size| size.is_finite())
+            .fold(0.0, f64::max);
         for arrow in arrows.iter_mut().filter(of) {
             arrow.along = arrow.along.map(|x| x / largest);
         }
@@ -155,9 +158,12 @@ pub fn supports(model: &Model) -> Vec<Support> {
         let dof = model.dofs.dof(node, component);
         dof.is_some_and(|dof| model.dofs.equation[dof].is_none() && !moved.contains(&dof))
     };
-    let all = nodes.into_iter().map(|node| {
-        let components = [Component::X, Component::Y, Component::Rotation];
-        (node, components.map(|component| held(node, component)))
-    });
-    all.filter(|(_, held)| held.contains(&true)).collect()
+    nodes
+        .into_iter()
+        .map(|node| {
+            let components = [Component::X, Component::Y, Component::Rotation];
+            (node, components.map(|component| held(node, component)))
+        })
+        .filter(|(_, held)| held.contains(&true))
+        .collect()
 }

@@ -118,8 +118,9 @@ pub fn pushes(
             continue;
         }
         let moved = [0, 1, 2].map(|row| {
-            let parts = (0..3).map(|k| w[(3 * target + row, 3 * place + k)] * change[k]);
-            parts.sum::<f64>()
+            (0..3)
+                .map(|k| w[(3 * target + row, 3 * place + k)] * change[k])
+                .sum::<f64>()
         });
         found.push(NodePush {
             slave: from,

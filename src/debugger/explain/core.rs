@@ -59,16 +59,18 @@ impl Core {
                 around.drain(..around.len() - 1);
             }
         }
-        let brings = |nodes: &&Vec<ContactState>| {
-            let of = |n: &ContactState| match n.mode {
-                Mode::Free => 0,
-                Mode::Fixed => 1 + u32::from(n.ratio != 0.0),
-                Mode::Sliding => 2 + u32::from(n.ratio != 0.0),
-            };
-            nodes.iter().map(of).sum::<u32>()
-        };
         let mut problem = self.problem.clone();
-        if let Some(least) = around.iter().min_by_key(brings) {
+        let least = around.iter().min_by_key(|nodes| {
+            nodes
+                .iter()
+                .map(|n| match n.mode {
+                    Mode::Free => 0,
+                    Mode::Fixed => 1 + u32::from(n.ratio != 0.0),
+                    Mode::Sliding => 2 + u32::from(n.ratio != 0.0),
+                })
+                .sum::<u32>()
+        });
+        if let Some(least) = least {
             for (node, state) in problem.nodes.iter_mut().zip(least) {
                 node.state = *state;
             }

@@ -10,11 +10,14 @@ const MOST_NODES: usize = 6;
 
 /// A sequence of modes in words; long runs are counted.
 pub fn pattern(words: &[&str]) -> String {
-    let stays = words.chunk_by(|a, b| a == b).map(|stay| match stay {
-        [word, _, _, ..] => format!("{word} ({} times)", stay.len()),
-        _ => stay.join(" → "),
-    });
-    stays.collect::<Vec<_>>().join(" → ")
+    words
+        .chunk_by(|a, b| a == b)
+        .map(|stay| match stay {
+            [word, _, _, ..] => format!("{word} ({} times)", stay.len()),
+            _ => stay.join(" → "),
+        })
+        .collect::<Vec<_>>()
+        .join(" → ")
 }
 
 /// Maximum number of stops named per node in a cycle of major iterations.
@@ -27,12 +30,15 @@ pub fn major_cycle(model: &Model, round: &MajorCycle) -> String {
         let modes: Vec<_> = stops.iter().map(|stop| stop.mode).collect();
         let moves = elements.iter().any(|e| *e != elements[0]);
         let switches = modes.iter().any(|m| *m != modes[0]);
-        let stop = |stop: &Stop| match (moves, switches) {
-            (true, false) => place(model, stop.element),
-            (false, true) => mode(stop.mode).to_string(),
-            _ => format!("{} on {}", mode(stop.mode), place(model, stop.element)),
-        };
-        let words: Vec<String> = stops.iter().take(MOST_STOPS).map(stop).collect();
+        let words: Vec<String> = stops
+            .iter()
+            .take(MOST_STOPS)
+            .map(|stop| match (moves, switches) {
+                (true, false) => place(model, stop.element),
+                (false, true) => mode(stop.mode).to_string(),
+                _ => format!("{} on {}", mode(stop.mode), place(model, stop.element)),
+            })
+            .collect();
         match (moves, switches) {
             (false, false) => format!("{} stays {}", slave(model, *s), words[0]),
             _ => format!("{} {} → …", slave(model, *s), words.join(" → ")),

@@ -52,12 +52,17 @@ impl Examination {
     /// The initial modes for a consistent state of the census; `None` if it does not exist.
     pub fn starts(&self, number: usize) -> Option<Vec<Start>> {
         let started = started(self.problem.as_ref()?, self.census.as_ref()?, number)?;
-        let start = |node: &stickslip_core::interface::problem::ProblemNode| Start {
-            slave: node.slave,
-            mode: node.state.mode,
-            t_max: node.state.t_max,
-        };
-        Some(started.nodes.iter().map(start).collect())
+        Some(
+            started
+                .nodes
+                .iter()
+                .map(|node| Start {
+                    slave: node.slave,
+                    mode: node.state.mode,
+                    t_max: node.state.t_max,
+                })
+                .collect(),
+        )
     }
 }
 
@@ -177,14 +182,18 @@ pub fn examine_nodes(
         Err(why) => return nothing(why),
         Ok(problem) => problem,
     };
-    let wanted = |place: &usize| slaves.contains(&problem.nodes[*place].slave);
-    let places: Vec<usize> = (0..problem.nodes.len()).filter(wanted).collect();
+    let places: Vec<usize> = (0..problem.nodes.len())
+        .filter(|place| slaves.contains(&problem.nodes[*place].slave))
+        .collect();
     let Some(studied) = problem.reduced(&places) else {
         return nothing("With all other nodes frozen, the interface problem is singular.");
     };
     let model = stepper.model();
-    let names = slaves.iter().map(|&slave| names::slave(model, slave));
-    let names = names.collect::<Vec<_>>().join(", ");
+    let names = slaves
+        .iter()
+        .map(|&slave| names::slave(model, slave))
+        .collect::<Vec<_>>()
+        .join(", ");
     let head = format!("For {names}, with all other nodes frozen:");
     counted(model, &studied, &head, stop)
 }

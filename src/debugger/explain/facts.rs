@@ -63,7 +63,6 @@ impl Fact {
 
     /// Facts of the same part.
     pub fn all(part: Part, lines: impl IntoIterator<Item = String>) -> Vec<Fact> {
-        let lines = lines.into_iter();
-        lines.map(|text| Fact { part, text }).collect()
+        lines.into_iter().map(|text| Fact { part, text }).collect()
     }
 }

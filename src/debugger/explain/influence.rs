@@ -158,12 +158,17 @@ pub fn pushed(FrozenStep { problem, before }: &FrozenStep, slave: usize) -> Opti
     let target = problem.nodes.iter().position(|node| node.slave == slave)?;
     let of = |node: usize| problem.nodes[node].slave;
     let found = influences(problem, &pick(problem, before), &after, &[target])?;
-    let push = |influence: Influence| NodePush {
-        slave: of(influence.from),
-        modes: [before[of(influence.from)].mode, after[influence.from].mode],
-        influence,
-    };
-    Some(found.into_iter().flatten().map(push).collect())
+    Some(
+        found
+            .into_iter()
+            .flatten()
+            .map(|influence| NodePush {
+                slave: of(influence.from),
+                modes: [before[of(influence.from)].mode, after[influence.from].mode],
+                influence,
+            })
+            .collect(),
+    )
 }
 
 /// The states of a problem's nodes, from those of all slave nodes.

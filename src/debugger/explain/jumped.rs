@@ -45,8 +45,9 @@ pub fn reservation(jumped: bool, unstable: Option<&StabilityLoss>) -> String {
 
 /// How the history ends with an increment.
 pub fn end(model: &Model, event: &Event) -> &'static str {
-    match event.is_cut_short(model) {
-        true => "; the path stops here, at its maximum length",
-        false => "; the history is complete",
+    if event.is_cut_short(model) {
+        "; the path stops here, at its maximum length"
+    } else {
+        "; the history is complete"
     }
 }

@@ -43,16 +43,18 @@ impl LoadLimitProbe {
             }
             None => format!("smaller steps reach at least load {at}"),
             Some((size, failure)) => {
-                let why = match discriminant(failure) == discriminant(first) {
-                    true => "the same failure".to_owned(),
-                    false => failures::describe(model, failure),
+                let why = if discriminant(failure) == discriminant(first) {
+                    "the same failure".to_owned()
+                } else {
+                    failures::describe(model, failure)
                 };
-                let far = match *load == self.from {
-                    true => format!(
+                let far = if *load == self.from {
+                    format!(
                         "not even a step of {} beyond load {at} succeeds",
                         sig2(*size)
-                    ),
-                    false => format!("smaller steps reach load {}", sig6(*load)),
+                    )
+                } else {
+                    format!("smaller steps reach load {}", sig6(*load))
                 };
                 format!("{far}; there: {why}")
             }

@@ -37,10 +37,11 @@ pub fn arrow(degrees: i16) -> &'static str {
 
 /// Initial modes of slave nodes, in words.
 pub fn starts(model: &Model, starts: &[Start]) -> String {
-    let words = starts
+    starts
         .iter()
-        .map(|start| format!("{} {}", slave(model, start.slave), mode(start.mode)));
-    words.collect::<Vec<_>>().join(", ")
+        .map(|start| format!("{} {}", slave(model, start.slave), mode(start.mode)))
+        .collect::<Vec<_>>()
+        .join(", ")
 }
 
 /// Modes in the order of Table 2's rows and columns.

@@ -98,11 +98,12 @@ pub fn element(element: SurfaceElement<'_>, place: impl Fn(usize) -> Point) -> V
         return nodes;
     }
     let count = element.degree() + 1;
-    let at = |k: usize| {
-        let shares = element.shape(lagrange::node(count, k)).n;
-        [0, 1].map(|axis| nodes.iter().zip(shares).map(|(x, n)| n * x[axis]).sum())
-    };
-    (0..count).map(at).collect()
+    (0..count)
+        .map(|k| {
+            let shares = element.shape(lagrange::node(count, k)).n;
+            [0, 1].map(|axis| nodes.iter().zip(shares).map(|(x, n)| n * x[axis]).sum())
+        })
+        .collect()
 }
 
 /// A rectangle in the scene.
@@ -259,12 +260,15 @@ const MOST: f64 = 1e6;
 /// be made visible.
 pub fn magnification<'a>(model: &Model, displacements: impl Iterator<Item = &'a [f64]>) -> f64 {
     let outer = || model.bodies.iter().flat_map(outer_nodes);
-    let moved = displacements.flat_map(|u| outer().map(move |node| displacement(model, u, node)));
-    let largest = moved.filter(|size| size.is_finite()).fold(0.0, f64::max);
+    let largest = displacements
+        .flat_map(|u| outer().map(move |node| displacement(model, u, node)))
+        .filter(|size| size.is_finite())
+        .fold(0.0, f64::max);
     let part = largest / model.length;
-    match part < TO_SCALE && SEEN / part <= MOST {
-        true => round_down(SEEN / part).max(1.0),
-        false => 1.0,
+    if part < TO_SCALE && SEEN / part <= MOST {
+        round_down(SEEN / part).max(1.0)
+    } else {
+        1.0
     }
 }
 
@@ -282,9 +286,10 @@ pub fn magnified(
     (factor, projection): (f64, Projection),
 ) -> Point {
     let (at, now) = (model.at_in_space(node), model.place_in_space(u, node));
-    let place = match factor == 1.0 {
-        true => now,
-        false => [0, 1, 2].map(|axis| at[axis] + factor * (now[axis] - at[axis])),
+    let place = if factor == 1.0 {
+        now
+    } else {
+        [0, 1, 2].map(|axis| at[axis] + factor * (now[axis] - at[axis]))
     };
     projection.flat(model, place)
 }

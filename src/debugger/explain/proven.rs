@@ -28,14 +28,15 @@ pub fn uniqueness_words<'a>(found: Uniqueness, name: &impl Fn(usize) -> &'a str)
             } else {
                 ""
             };
-            return match spare.is_infinite() {
-                true => format!(
+            return if spare.is_infinite() {
+                format!(
                     "unique for this frozen problem: without friction its matrix allows at most one state{but}"
-                ),
-                false => format!(
+                )
+            } else {
+                format!(
                     "unique for this frozen problem: its matrix allows at most one state{but}, \
                      even with tan φ up to {spare:.3} times as large"
-                ),
+                )
             };
         }
         Uniqueness::Unproven { spare } => {
@@ -78,11 +79,12 @@ pub fn family_words<'a>(
             .iter()
             .take(MOST_NAMED)
             .map(|&(place, ranges)| {
-                let component = |(word, [low, high]): (&str, [f64; 2])| {
-                    (low < high).then(|| format!("{word} {} to {}", end(low), end(high)))
-                };
-                let both = ["F_n", "F_t"].into_iter().zip(ranges);
-                let lines: Vec<String> = both.filter_map(component).collect();
+                let lines: Vec<String> = ["F_n", "F_t"]
+                    .into_iter()
+                    .zip(ranges)
+                    .filter(|(_, [low, high])| low < high)
+                    .map(|(word, [low, high])| format!("{word} {} to {}", end(low), end(high)))
+                    .collect();
                 format!("{} {}", name(place), lines.join(", "))
             });
         let forces: Vec<String> = forces.collect();
@@ -169,11 +171,14 @@ pub fn cycle_words<'a>(
 
 /// The fixed point of T_max at the first nodes.
 fn fixed_words<'a>(found: &TMaxIteration, name: &impl Fn(usize) -> &'a str) -> Option<String> {
-    let all = found.places.iter().zip(&found.fixed);
-    let text = all
+    let text = found
+        .places
+        .iter()
+        .zip(&found.fixed)
         .take(MOST_NAMED)
-        .map(|(&place, &t_max)| format!("{} at {}", sig4(t_max), name(place)));
-    let text = text.collect::<Vec<_>>().join(", ");
+        .map(|(&place, &t_max)| format!("{} at {}", sig4(t_max), name(place)))
+        .collect::<Vec<_>>()
+        .join(", ");
     let more = match found.places.len().saturating_sub(MOST_NAMED) {
         0 => String::new(),
         more => format!(", and {}", counted(more, "more node")),
@@ -191,11 +196,11 @@ pub fn slow_words<'a>(problem: &InterfaceProblem, name: &impl Fn(usize) -> &'a s
         return lines;
     }
     lines.extend(fixed_words(&found, name));
-    let factors = found
+    let mut factors: Vec<(usize, f64)> = found
         .places
         .iter()
-        .filter_map(|&place| Some((place, factor(problem, place)?)));
-    let mut factors: Vec<(usize, f64)> = factors.collect();
+        .filter_map(|&place| Some((place, factor(problem, place)?)))
+        .collect();
     factors.sort_by(|a, b| b.1.total_cmp(&a.1));
     lines.extend(factors.iter().take(MOST_NAMED).map(|&(place, factor)| {
         format!(

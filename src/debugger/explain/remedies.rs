@@ -177,8 +177,8 @@ pub fn offered(
     let answers = Remedy::answers(model, found).into_iter();
     let tuned = offers.parameters.iter().flat_map(Remedy::tuned);
     let all = answers.chain(touching).chain(tuned).chain(parts);
-    let takes = |remedy: &Remedy| remedy.first.iter().all(|first| offers.check(first).is_ok());
-    all.filter(takes).collect()
+    all.filter(|remedy| remedy.first.iter().all(|first| offers.check(first).is_ok()))
+        .collect()
 }
 
 /// Tries a remedy that changes the scene from its start; `None` if interrupted, or if the scene cannot be
@@ -317,12 +317,13 @@ fn hysteresis(stepper: &Stepper, event: &Event) -> Vec<Intervention> {
             mode: record.decision.before,
             hold: true,
         });
-    let held = records().filter(|(_, record)| {
-        matches!(record.forced, Forced::Held(_))
-            && record.decision.wanted != record.decision.next
-            && !near(record)
-    });
-    let release = held.map(|(slave, _)| Intervention::Release { slave });
+    let release = records()
+        .filter(|(_, record)| {
+            matches!(record.forced, Forced::Held(_))
+                && record.decision.wanted != record.decision.next
+                && !near(record)
+        })
+        .map(|(slave, _)| Intervention::Release { slave });
     hold.chain(release).collect()
 }
 

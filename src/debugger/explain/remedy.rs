@@ -111,10 +111,11 @@ impl RemedyInput {
                 format!(":increment {}", number::shortest(*size))
             }
             RemedyInput::StartFrom(answer) => format!(":start-from {}", answer + 1),
-            RemedyInput::Restart(changes) => {
-                let option = |(path, value): &(String, String)| format!("--set {path}={value}");
-                changes.iter().map(option).collect::<Vec<_>>().join(" ")
-            }
+            RemedyInput::Restart(changes) => changes
+                .iter()
+                .map(|(path, value)| format!("--set {path}={value}"))
+                .collect::<Vec<_>>()
+                .join(" "),
             RemedyInput::Listed => "r, then select it and press Enter".into(),
         }
     }
@@ -136,9 +137,11 @@ pub struct Remedy {
 impl Remedy {
     /// The remedy that starts nodes in contact in another mode than their surface's; `None` if they have it.
     pub fn touching(state: &State, mode: Mode) -> Option<Remedy> {
-        let nodes = state.nodes.iter().enumerate();
-        let others = nodes.filter(|(_, node)| node.mode != Mode::Free && node.mode != mode);
-        let first: Vec<Intervention> = others
+        let first: Vec<Intervention> = state
+            .nodes
+            .iter()
+            .enumerate()
+            .filter(|(_, node)| node.mode != Mode::Free && node.mode != mode)
             .map(|(slave, _)| Intervention::Force {
                 slave,
                 mode,
@@ -227,9 +230,10 @@ impl Remedy {
                     part => format!("{part} of the increment"),
                 };
                 let first = vec![Intervention::Increment(size)];
-                let how = match model.increments.is_empty() {
-                    true => RemedyInput::Increment(size),
-                    false => RemedyInput::IncrementOn(state.start.leg, size),
+                let how = if model.increments.is_empty() {
+                    RemedyInput::Increment(size)
+                } else {
+                    RemedyInput::IncrementOn(state.start.leg, size)
                 };
                 Some(remedy(&label, how, first))
             }
@@ -259,11 +263,10 @@ impl Remedy {
                 changes.push(change);
             }
         }
-        let describe = |(path, value): &(String, String)| {
+        let label = changes.first().map(|(path, value)| {
             let (_, field) = path.rsplit_once('.').unwrap_or(("", path));
             format!("{field}: {value}")
-        };
-        let label = changes.first().map(describe)?;
+        })?;
         let law = Remedy {
             kind: RemedyKind::Law,
             label,
@@ -391,13 +394,14 @@ fn change(
 /// Initial modes to restart the increment with: for the nodes on their surface, or else for the closest one.
 fn starts(model: &Model, state: &State, mode: Mode) -> Vec<Intervention> {
     let places = model.places(&state.start.u);
-    let over = |slave: usize| {
-        let contact = &model.contacts[slave];
-        let spot = state.start.nodes[slave].spot?;
-        let found = projection_at(&model.surfaces, spot, &places, places[contact.node]);
-        Some((slave, found.gap))
-    };
-    let gaps: Vec<(usize, f64)> = (0..model.contacts.len()).filter_map(over).collect();
+    let gaps: Vec<(usize, f64)> = (0..model.contacts.len())
+        .filter_map(|slave| {
+            let contact = &model.contacts[slave];
+            let spot = state.start.nodes[slave].spot?;
+            let found = projection_at(&model.surfaces, spot, &places, places[contact.node]);
+            Some((slave, found.gap))
+        })
+        .collect();
     let touches = |gap: f64| gap <= TOUCHES * model.length;
     let mut chosen: Vec<usize> = gaps
         .iter()
@@ -408,13 +412,14 @@ fn starts(model: &Model, state: &State, mode: Mode) -> Vec<Intervention> {
         let nearest = gaps.iter().min_by(|a, b| a.1.total_cmp(&b.1));
         chosen.extend(nearest.map(|(slave, _)| *slave));
     }
-    let differs = |slave: &usize| state.start.nodes[*slave].mode != mode;
-    let force = |slave: usize| Intervention::Force {
-        slave,
-        mode,
-        hold: false,
-    };
-    let forced = chosen.into_iter().filter(differs).map(force);
+    let forced = chosen
+        .into_iter()
+        .filter(|slave| state.start.nodes[*slave].mode != mode)
+        .map(|slave| Intervention::Force {
+            slave,
+            mode,
+            hold: false,
+        });
     let mut all = vec![Intervention::Increment(state.controls.increment)];
     all.extend(forced);
     if all.len() == 1 { Vec::new() } else { all }

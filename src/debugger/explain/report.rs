@@ -7,12 +7,11 @@ use crate::explain::judged;
 use crate::explain::jumped;
 use crate::explain::names::{self, mode, position_in, slave};
 use crate::explain::strain;
-use stickslip_core::step::arc_state::Change;
 use stickslip_core::step::event::SmallerStepReason;
 use stickslip_core::words::counted;
 use stickslip_core::{
-    ContactRecord, Decision, Event, Failure, Intervention, Model, MotionEvent, Outcome, Position,
-    Rule, Singular, State, TestedQuantity,
+    Decision, Event, Failure, Intervention, Model, MotionEvent, Outcome, Position, Rule, Singular,
+    State, TestedQuantity,
 };
 use stickslip_scene::number::{shortest, sig2, sig4, sig6};
 use stickslip_scene::shown::first_of;
@@ -191,11 +190,13 @@ fn outcome_with(model: &Model, event: &Event, failed: fn(&Model, &Failure) -> St
             sig6(*size)
         ),
         Outcome::PathCorner { why, changes } => {
-            let change = |change: &Change| {
-                let (name, to) = (slave(model, change.contact), mode(change.to));
-                format!("{name} is {to}")
-            };
-            let changes: Vec<String> = changes.iter().map(change).collect();
+            let changes: Vec<String> = changes
+                .iter()
+                .map(|change| {
+                    let (name, to) = (slave(model, change.contact), mode(change.to));
+                    format!("{name} is {to}")
+                })
+                .collect();
             format!(
                 "{at}: {}; the path has a corner, after which {}",
                 failed(model, why),
@@ -220,8 +221,13 @@ fn outcome_with(model: &Model, event: &Event, failed: fn(&Model, &Failure) -> St
             sig6(*size)
         ),
         Outcome::Major { after, settled } => {
-            let leaves = |node: &ContactRecord| node.decision.rule == Rule::CornerReleases;
-            let how = match (settled, event.nodes.iter().any(leaves)) {
+            let how = match (
+                settled,
+                event
+                    .nodes
+                    .iter()
+                    .any(|node| node.decision.rule == Rule::CornerReleases),
+            ) {
                 (true, false) => "minor iterations settled".to_owned(),
                 (true, true) => format!("minor iterations settled, then {}", changes(model, event)),
                 (false, _) => "minor iterations stopped before settling".to_owned(),
@@ -233,9 +239,10 @@ fn outcome_with(model: &Model, event: &Event, failed: fn(&Model, &Failure) -> St
                 (!after.limit.is_nan()).then(|| format!("limit {}", sig2(after.limit))),
             ];
             let numbers: Vec<String> = numbers.into_iter().flatten().collect();
-            match numbers.is_empty() {
-                true => format!("{at}: {how}"),
-                false => format!("{at}: {how}; {}", numbers.join(", ")),
+            if numbers.is_empty() {
+                format!("{at}: {how}")
+            } else {
+                format!("{at}: {how}; {}", numbers.join(", "))
             }
         }
         Outcome::Refused { why, .. } => format!(
@@ -320,8 +327,7 @@ fn together(event: &Event, rule: Rule) -> bool {
 /// A pivot of Lemke's method: the bound reached, and the remaining relaxation.
 fn pivot(model: &Model, event: &Event) -> String {
     let tests = |s: usize| event.nodes[s].decision.tests;
-    let mut nodes = 0..event.nodes.len();
-    let what = nodes.find_map(|s| {
+    let what = (0..event.nodes.len()).find_map(|s| {
         let what = match tests(s)[1]?.tested {
             TestedQuantity::Gap => "the gap closed",
             TestedQuantity::NormalForce => "F_n vanished",
@@ -402,15 +408,19 @@ pub fn reservations(model: &Model, event: &Event) -> String {
 }
 
 fn changes(model: &Model, event: &Event) -> String {
-    let changed = |s: &usize| event.nodes[*s].decision.changes();
-    let all: Vec<usize> = (0..event.nodes.len()).filter(changed).collect();
-    let describe = |&s: &usize| {
-        let d = &event.nodes[s].decision;
-        format!("{} {} → {}", slave(model, s), mode(d.before), mode(d.next))
-    };
+    let all: Vec<usize> = (0..event.nodes.len())
+        .filter(|s| event.nodes[*s].decision.changes())
+        .collect();
     // Three changes fit in the space of two and a count.
     let most = if all.len() == 3 { 3 } else { 2 };
-    first_of(all.iter().map(describe), most, ", ")
+    first_of(
+        all.iter().map(|&s| {
+            let d = &event.nodes[s].decision;
+            format!("{} {} → {}", slave(model, s), mode(d.before), mode(d.next))
+        }),
+        most,
+        ", ",
+    )
 }
 
 /// Describes an intervention.

@@ -94,12 +94,17 @@ pub fn pushes(
     let mut trials = Trials::new(&problem)?;
     trials.solve_states(&states)?;
     let found = spread(&mut trials, &states, &[target], change)?;
-    let push = |influence: super::influence::Influence| NodePush {
-        slave: posed.contacts[influence.from],
-        modes: modes(influence.from),
-        influence,
-    };
-    is_explained.then(|| found.into_iter().flatten().map(push).collect())
+    is_explained.then(|| {
+        found
+            .into_iter()
+            .flatten()
+            .map(|influence| NodePush {
+                slave: posed.contacts[influence.from],
+                modes: modes(influence.from),
+                influence,
+            })
+            .collect()
+    })
 }
 
 /// The reported numbers of an iteration for the problem's contacts.
@@ -114,18 +119,23 @@ struct ReportedPushes {
 impl ReportedPushes {
     /// `None` if forces were not reported, or the problem gives other gaps.
     fn new(posed: &ReportedProblem, nodes: &[ContactRecord]) -> Option<ReportedPushes> {
-        let records = posed.contacts.iter().map(|&slave| nodes.get(slave));
-        let records: Vec<&ContactRecord> = records.collect::<Option<_>>()?;
+        let records: Vec<&ContactRecord> = posed
+            .contacts
+            .iter()
+            .map(|&slave| nodes.get(slave))
+            .collect::<Option<_>>()?;
         let forces = records.iter().flat_map(|record| [record.f_n, record.f_t]);
         let forces = DVector::from_iterator(2 * records.len(), forces);
         let motion = posed.motion(&forces)?;
         let q = DVector::from_column_slice(&posed.q);
         let scale = (&motion - &q).amax().max(q.amax());
-        let other = |(place, record): (usize, &&ContactRecord)| {
-            (record.gap - motion[2 * place]).abs() > SAME * scale
-        };
         let sound = forces.iter().all(|force| force.is_finite());
-        (sound && !records.iter().enumerate().any(other)).then(|| ReportedPushes {
+        (sound
+            && !records
+                .iter()
+                .enumerate()
+                .any(|(place, record)| (record.gap - motion[2 * place]).abs() > SAME * scale))
+        .then(|| ReportedPushes {
             modes: records
                 .iter()
                 .map(|record| record.decision.before)

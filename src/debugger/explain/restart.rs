@@ -66,9 +66,10 @@ pub fn restart(stepper: &mut Stepper, state: &State, stop: &dyn Fn() -> bool) ->
         let outcome = &stepper.event().outcome;
         majors += u64::from(outcome.ends_major());
         let accepted = matches!(outcome, Outcome::Increment { .. });
-        match accepted && is_past(stepper, target) {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
+        if accepted && is_past(stepper, target) {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
         }
     });
     let failure = match end {

@@ -110,11 +110,10 @@ impl<'a> BodyMotion<'a> {
         let (model, dofs) = (self.model, &self.model.dofs);
         let nodes = &model.bodies[self.body].nodes;
         let of = |load: &stickslip_core::model::Load| {
-            let on = |node: &&usize| {
+            let node = *nodes.iter().find(|node| {
                 let first = dofs.first[**node];
                 (first..first + usize::from(dofs.count[**node])).contains(&load.dof)
-            };
-            let node = *nodes.iter().find(on)?;
+            })?;
             let v = self.velocity(self.places[node]);
             let rate = match (load.dof - dofs.first[node], self.motion) {
                 (axis @ 0..=1, _) => v[axis],
@@ -127,8 +126,10 @@ impl<'a> BodyMotion<'a> {
         let mut following = 0.0;
         let factor = |scale: &Factor| scale.at(state.load_factor);
         Pressures::new(model).each(model, &state.u, factor, |dof, force| {
-            let on = |node: &&usize| (dofs.first[**node]..dofs.first[**node] + 2).contains(&dof);
-            if let Some(&node) = nodes.iter().find(on) {
+            if let Some(&node) = nodes
+                .iter()
+                .find(|node| (dofs.first[**node]..dofs.first[**node] + 2).contains(&dof))
+            {
                 following += force * self.velocity(self.places[node])[dof - dofs.first[node]];
             }
         });
@@ -231,17 +232,19 @@ impl<'a> BodyMotion<'a> {
     /// The contacts of the body that face a surface, with their velocities relative to the surface along n and
     /// t.
     pub(super) fn rates(&self, state: &State) -> Vec<(usize, [f64; 2])> {
-        let rate = |s: usize| {
-            let (node, over) = (self.model.contacts[s].node, self.over(state, s)?);
-            let (v, side) = match self.has(node) {
-                true => (self.velocity(self.places[node]), 1.0),
-                false => (self.velocity(over.foot), -1.0),
-            };
-            let [n, t] = [over.normal, tangent(over.normal)];
-            let along = |d: [f64; 2]| side * dot(v, d);
-            Some((s, [along(n), along(t)]))
-        };
-        self.own().filter_map(rate).collect()
+        self.own()
+            .filter_map(|s| {
+                let (node, over) = (self.model.contacts[s].node, self.over(state, s)?);
+                let (v, side) = if self.has(node) {
+                    (self.velocity(self.places[node]), 1.0)
+                } else {
+                    (self.velocity(over.foot), -1.0)
+                };
+                let [n, t] = [over.normal, tangent(over.normal)];
+                let along = |d: [f64; 2]| side * dot(v, d);
+                Some((s, [along(n), along(t)]))
+            })
+            .collect()
     }
 
     /// The contact or support that would stop the motion.
@@ -303,8 +306,9 @@ impl<'a> BodyMotion<'a> {
         };
         let every = nodes.len().div_ceil(ARROWS).max(1);
         let chosen = nodes.iter().step_by(every);
-        let moves = |&node: &usize| (self.places[node], self.velocity(self.places[node]));
-        let all: Vec<([f64; 2], [f64; 2])> = chosen.map(moves).collect();
+        let all: Vec<([f64; 2], [f64; 2])> = chosen
+            .map(|&node| (self.places[node], self.velocity(self.places[node])))
+            .collect();
         let largest = all
             .iter()
             .map(|(_, v)| v[0].hypot(v[1]))
@@ -339,12 +343,13 @@ fn since(model: &Model, state: &State, at_start: &Singular) -> String {
         .filter(|&s| rank(state.nodes[s].mode) < rank(state.start.nodes[s].mode))
         .map(|s| slave(model, s))
         .collect();
-    match let_go.is_empty() {
-        true => format!("the body was held at load {load}"),
-        false => format!(
+    if let_go.is_empty() {
+        format!("the body was held at load {load}")
+    } else {
+        format!(
             "the body was held at load {load}; on the way to {}, {} lost contact or stick",
             shortest(state.load_factor),
             first_of(let_go, MOST_NODES, ", ")
-        ),
+        )
     }
 }

@@ -30,8 +30,11 @@ pub struct RoundOff {
 
 /// The largest length of a scene: its size or its largest coordinate.
 pub fn reach(model: &Model) -> f64 {
-    let coordinates = model.nodes.iter().flat_map(|node| node.at);
-    coordinates.fold(model.length, |m, x| m.max(x.abs()))
+    model
+        .nodes
+        .iter()
+        .flat_map(|node| node.at)
+        .fold(model.length, |m, x| m.max(x.abs()))
 }
 
 impl RoundOff {
@@ -78,10 +81,7 @@ impl RoundOff {
 
 /// A value, or 0 if it is round-off; NaN stays NaN.
 fn clean(value: f64, round_off: f64) -> f64 {
-    match value.abs() <= round_off {
-        true => 0.0,
-        false => value,
-    }
+    if value.abs() <= round_off { 0.0 } else { value }
 }
 
 #[cfg(test)]

@@ -153,12 +153,11 @@ impl MaterialCause {
             ),
             _ => String::new(),
         };
-        let text = match self.point.determinant > 0.0 {
-            true => outside(model, &self.point),
-            false => {
-                let (point, limit) = (inverted(model, &self.point), limit(model, &self.point));
-                format!("{point}; {limit}")
-            }
+        let text = if self.point.determinant > 0.0 {
+            outside(model, &self.point)
+        } else {
+            let (point, limit) = (inverted(model, &self.point), limit(model, &self.point));
+            format!("{point}; {limit}")
         };
         format!("{text}{before}")
     }

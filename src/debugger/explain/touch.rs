@@ -72,12 +72,15 @@ impl TouchWatch {
         let Outcome::Increment { jumped, motion, .. } = event.outcome else {
             return;
         };
-        let all = self.touched.iter().zip(&event.nodes);
-        let limits = all.map(|(touched, record)| match touched {
-            true if record.decision.next != Mode::Free => record.t_max.abs(),
-            _ => 0.0,
-        });
-        let limit = limits.fold(0.0, f64::max);
+        let limit = self
+            .touched
+            .iter()
+            .zip(&event.nodes)
+            .map(|(touched, record)| match touched {
+                true if record.decision.next != Mode::Free => record.t_max.abs(),
+                _ => 0.0,
+            })
+            .fold(0.0, f64::max);
         let most = self.decided.as_ref().map_or(0.0, |decided| decided.limit);
         if limit > most && !jumped && motion.is_none() {
             self.decided = Some(TouchDecision {
@@ -120,19 +123,24 @@ impl TouchWatch {
 
 /// Forces on the slave nodes: F_n n + F_t t, with t = n turned 90 degrees anticlockwise.
 fn forces(state: &State) -> Vec<[f64; 2]> {
-    let force = |node: &stickslip_core::contact::state::ContactState| {
-        let [x, y] = node.normal;
-        [node.f_n * x - node.f_t * y, node.f_n * y + node.f_t * x]
-    };
-    state.nodes.iter().map(force).collect()
+    state
+        .nodes
+        .iter()
+        .map(|node| {
+            let [x, y] = node.normal;
+            [node.f_n * x - node.f_t * y, node.f_n * y + node.f_t * x]
+        })
+        .collect()
 }
 
 /// The largest difference, relative to the largest force in `ours`.
 fn difference(ours: &[[f64; 2]], theirs: &[[f64; 2]]) -> f64 {
     let largest = ours.iter().map(|[x, y]| x.hypot(*y)).fold(0.0, f64::max);
-    let pairs = ours.iter().zip(theirs);
-    let apart = pairs.map(|([a, b], [x, y])| (a - x).hypot(b - y));
-    apart.fold(0.0, f64::max) / largest.max(f64::MIN_POSITIVE)
+    ours.iter()
+        .zip(theirs)
+        .map(|([a, b], [x, y])| (a - x).hypot(b - y))
+        .fold(0.0, f64::max)
+        / largest.max(f64::MIN_POSITIVE)
 }
 
 impl TouchDifference {

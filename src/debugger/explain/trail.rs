@@ -100,9 +100,10 @@ impl Cone {
         let mu = friction.coefficient();
         let bound = mu * f_n + friction.cohesion;
         // The edge ends at the frame.
-        let end = match bound > f_t {
-            true => [-f_t, (f_t - friction.cohesion) / mu],
-            false => [-bound, f_n],
+        let end = if bound > f_t {
+            [-f_t, (f_t - friction.cohesion) / mu]
+        } else {
+            [-bound, f_n]
         };
         Cone {
             f_t,
@@ -125,10 +126,14 @@ pub fn cobweb(trail: &[TrailPoint]) -> (f64, Vec<[f64; 2]>) {
         .filter(|step| step.iter().all(|value| value.is_finite()))
         .collect();
     let last = steps.last().map_or(0.0, |step| step[1]);
-    let far = |value: &f64| (value - last).abs() > CLOSE * last.abs();
-    let origin = match steps.iter().flatten().any(far) {
-        true => 0.0,
-        false => last,
+    let origin = if steps
+        .iter()
+        .flatten()
+        .any(|value| (value - last).abs() > CLOSE * last.abs())
+    {
+        0.0
+    } else {
+        last
     };
     let path = steps.into_iter().flat_map(|step| {
         let [used, found] = step.map(|value| value - origin);

@@ -57,9 +57,10 @@ impl TryLine {
         TryLine {
             label: trial.label.clone(),
             typed: typed(&trial.how),
-            outcome: match works {
-                true => TryOutcome::Works,
-                false => TryOutcome::Fails,
+            outcome: if works {
+                TryOutcome::Works
+            } else {
+                TryOutcome::Fails
             },
             end,
             trial: Some(trial.clone()),

@@ -35,8 +35,12 @@ impl ReportedIterations {
     pub fn add(&mut self, before: &State, event: &Event, after: &State) {
         let major = |at: Position| (at.increment, at.attempt, at.major);
         let at = major(event.position);
-        let is_other = |last: &Arc<Event>| major(last.position) != at;
-        if self.events.last().is_none_or(is_other) || self.events.len() == MOST_REPORTED {
+        if self
+            .events
+            .last()
+            .is_none_or(|last| major(last.position) != at)
+            || self.events.len() == MOST_REPORTED
+        {
             self.events.clear();
             self.start = Some(Box::new(before.clone()));
         }

@@ -158,10 +158,9 @@ impl Breakpoints {
         model: &Model,
     ) -> Result<String, NoBreakpoint> {
         self.check(id, model)?;
-        let chosen = |b: &&mut Breakpoint| id.is_none_or(|id| b.id == id);
         self.all
             .iter_mut()
-            .filter(chosen)
+            .filter(|b| id.is_none_or(|id| b.id == id))
             .for_each(|b| b.enabled = on);
         Ok(self.describe(model))
     }
@@ -179,8 +178,11 @@ impl Breakpoints {
     /// The numbers of the enabled breakpoints that are hit at a point. `before` is the previous point of the
     /// line.
     pub fn hits(&self, before: &Strip, now: &Strip) -> Vec<u32> {
-        let hit = |b: &&Breakpoint| b.enabled && b.condition.holds(before, now);
-        self.all.iter().filter(hit).map(|b| b.id).collect()
+        self.all
+            .iter()
+            .filter(|b| b.enabled && b.condition.holds(before, now))
+            .map(|b| b.id)
+            .collect()
     }
 
     /// All breakpoints in one line.

@@ -240,9 +240,8 @@ pub fn describe(tree: &Tree, comparison: &Comparison) -> String {
 /// The first nodes whose modes differ.
 fn differing(model: &Model, a: &Side, b: &Side) -> String {
     const SHOWN: usize = 3;
-    let differ = |&s: &usize| a.nodes[s].next != b.nodes[s].next;
     let nodes: Vec<usize> = (0..a.nodes.len().min(b.nodes.len()))
-        .filter(differ)
+        .filter(|&s| a.nodes[s].next != b.nodes[s].next)
         .collect();
     let describe = |&s: &usize| {
         let [a, b] = [a.nodes[s].next, b.nodes[s].next].map(names::mode);

@@ -149,9 +149,9 @@ pub fn rounds(strips: &[Strip]) -> Option<Rounds> {
     };
     let elsewhere = |then: usize| !within(1, 1 + tail.len() - then, DIFFERENT_MARGIN);
     let by_modes = cycle::closed(tail.len(), 2, repeats, |_| true);
-    let by_values = || cycle::closed(tail.len(), 2, values_repeat, elsewhere);
     let values = by_modes.is_none();
-    if let Some(round) = by_modes.or_else(by_values) {
+    if let Some(round) = by_modes.or_else(|| cycle::closed(tail.len(), 2, values_repeat, elsewhere))
+    {
         let period = round.len();
         let again = |back: usize| {
             if values {
@@ -262,14 +262,17 @@ pub fn words(model: &Model, rounds: &Rounds, tells_since: bool) -> String {
             )
         }
         Rounds::Irregular { members, over } => {
-            let member = |(slave, count): &(usize, usize)| {
-                format!(
-                    "{} ({})",
-                    names::slave(model, *slave),
-                    counted(*count, "time")
-                )
-            };
-            let lines: Vec<String> = members.iter().take(NAMED).map(member).collect();
+            let lines: Vec<String> = members
+                .iter()
+                .take(NAMED)
+                .map(|(slave, count)| {
+                    format!(
+                        "{} ({})",
+                        names::slave(model, *slave),
+                        counted(*count, "time")
+                    )
+                })
+                .collect();
             // Fewer iterations have had no time to repeat.
             let order = if *over < BACK {
                 ""

@@ -43,62 +43,57 @@ pub enum PointKind {
     Failed,
 }
 
+use PointKind::*;
+
 impl PointKind {
     /// The kind of an iteration with this outcome.
     pub fn from_outcome(outcome: &Outcome) -> PointKind {
         match outcome {
-            Outcome::Minor => PointKind::Minor,
-            Outcome::Damped { .. } => PointKind::Damped,
-            Outcome::StrategyChange { .. } => PointKind::Climbed,
+            Outcome::Minor => Minor,
+            Outcome::Damped { .. } => Damped,
+            Outcome::StrategyChange { .. } => Climbed,
             Outcome::Cut { .. }
             | Outcome::WholeIncrement { .. }
             | Outcome::Fallback { .. }
             | Outcome::PathCorner { .. }
-            | Outcome::Motion(_) => PointKind::Cut,
-            Outcome::HeldBack { .. } => PointKind::Damped,
-            Outcome::Major { .. } => PointKind::Major,
-            Outcome::Refused { .. } => PointKind::Refused,
+            | Outcome::Motion(_) => Cut,
+            Outcome::HeldBack { .. } => Damped,
+            Outcome::Major { .. } => Major,
+            Outcome::Refused { .. } => Refused,
             Outcome::Increment { last, jumped, .. } => match (last, jumped) {
-                (false, false) => PointKind::Increment,
-                (false, true) => PointKind::Jumped,
-                (true, false) => PointKind::Last,
-                (true, true) => PointKind::LastJumped,
+                (false, false) => Increment,
+                (false, true) => Jumped,
+                (true, false) => Last,
+                (true, true) => LastJumped,
             },
-            Outcome::Failed(Failure::Cycle(_)) => PointKind::Cycle,
-            Outcome::Failed(_) => PointKind::Failed,
+            Outcome::Failed(Failure::Cycle(_)) => Cycle,
+            Outcome::Failed(_) => Failed,
         }
     }
 
     /// Whether a minor iteration was solved.
     pub fn is_solved(self) -> bool {
-        !matches!(self, PointKind::Start | PointKind::Intervention)
+        !matches!(self, Start | Intervention)
     }
 
     /// Whether a major iteration ended, successfully or not.
     pub fn ends_major(self) -> bool {
-        self.is_solved()
-            && !matches!(
-                self,
-                PointKind::Minor | PointKind::Damped | PointKind::Climbed
-            )
+        self.is_solved() && !matches!(self, Minor | Damped | Climbed)
     }
 
     /// Whether the increment failed.
     pub fn is_failure(self) -> bool {
-        matches!(self, PointKind::Cycle | PointKind::Failed)
+        matches!(self, Cycle | Failed)
     }
 
     /// Whether an increment was accepted.
     pub fn is_accepted(self) -> bool {
-        matches!(
-            self,
-            PointKind::Increment | PointKind::Jumped | PointKind::Last | PointKind::LastJumped
-        )
+        matches!(self, Increment | Jumped | Last | LastJumped)
     }
 
     /// Whether the history ended.
     pub fn is_last(self) -> bool {
-        matches!(self, PointKind::Last | PointKind::LastJumped)
+        matches!(self, Last | LastJumped)
     }
 }
 
@@ -177,9 +172,7 @@ impl Strip {
             position: event.map_or(state.next, |event| event.position),
             load_factor: event.map_or(state.load_factor, |event| event.load_factor),
             leg: state.start.leg as u32,
-            kind: event.map_or(PointKind::Start, |event| {
-                PointKind::from_outcome(&event.outcome)
-            }),
+            kind: event.map_or(Start, |event| PointKind::from_outcome(&event.outcome)),
             residual: event.map_or(0.0, |event| event.before.relative),
             first: event
                 .filter(|event| begins(event) || model.finished.is_some())
@@ -212,7 +205,7 @@ impl Strip {
             position: before.position,
             load_factor: state.load_factor,
             leg: state.start.leg as u32,
-            kind: PointKind::Intervention,
+            kind: Intervention,
             residual: before.residual,
             first: None,
             after: None,

@@ -325,8 +325,10 @@ impl Tree {
 
     /// The nearest whole frame of the line at or before an index.
     pub fn whole_before(&self, at: usize) -> usize {
-        let whole = |k: &usize| self.line.frames[*k].is_whole();
-        (0..=at).rev().find(whole).unwrap_or(0)
+        (0..=at)
+            .rev()
+            .find(|k| self.line.frames[*k].is_whole())
+            .unwrap_or(0)
     }
 
     /// Restores a thinned frame of the line. Returns `false` if the frame does not match its strip.

@@ -194,15 +194,14 @@ pub(crate) fn is_same_cycle(a: &Cycle, b: &Cycle) -> bool {
         return false;
     }
     let period = a.period as usize;
-    let turned = |by: usize| {
+    (0..period).any(|by| {
         a.members
             .iter()
             .zip(&b.members)
             .all(|((s, modes), (t, others))| {
                 s == t && (0..period).all(|k| modes.get((k + by) % period) == others.get(k))
             })
-    };
-    (0..period).any(turned)
+    })
 }
 
 /// A verdict in words.
@@ -247,14 +246,16 @@ pub fn order(all: &[Summary]) -> Vec<(usize, usize)> {
 
 /// All branches in one line.
 pub fn listed(tree: &Tree) -> String {
-    let one = |summary: Summary| {
-        let mark = if summary.is_current { "▸" } else { "" };
-        let verdict = describe(tree, &summary.verdict);
-        format!(
-            "{mark}{} ({verdict}, {} minor)",
-            summary.name, summary.whole.minors
-        )
-    };
-    let all: Vec<String> = summaries(tree).into_iter().map(one).collect();
+    let all: Vec<String> = summaries(tree)
+        .into_iter()
+        .map(|summary| {
+            let mark = if summary.is_current { "▸" } else { "" };
+            let verdict = describe(tree, &summary.verdict);
+            format!(
+                "{mark}{} ({verdict}, {} minor)",
+                summary.name, summary.whole.minors
+            )
+        })
+        .collect();
     all.join("; ")
 }

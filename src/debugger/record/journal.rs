@@ -156,15 +156,14 @@ impl Journal {
     ///
     /// # Errors If the file exists or cannot be written. No incomplete file is left behind.
     pub fn create(path: &Path, scene: &Scene, done: &[Entry]) -> Result<Journal, JournalError> {
-        let failed = |source: io::Error| match source.kind() {
-            io::ErrorKind::AlreadyExists => JournalError::Exists(path.to_owned()),
-            _ => failure(path, "written", source),
-        };
         let mut options = File::options();
         options.append(true).create_new(true);
         let file = system::set_private(&mut options)
             .open(path)
-            .map_err(failed)?;
+            .map_err(|source| match source.kind() {
+                io::ErrorKind::AlreadyExists => JournalError::Exists(path.to_owned()),
+                _ => failure(path, "written", source),
+            })?;
         let mut journal = Journal {
             path: path.to_owned(),
             file,
@@ -243,8 +242,9 @@ impl Journal {
     /// # Errors
     /// If it cannot be written.
     pub fn cut(&mut self, whole_bytes: u64) -> Result<(), JournalError> {
-        let failed = |e| failure(&self.path, "written", e);
-        self.file.set_len(whole_bytes).map_err(failed)?;
+        self.file
+            .set_len(whole_bytes)
+            .map_err(|e| failure(&self.path, "written", e))?;
         self.whole = whole_bytes;
         Ok(())
     }

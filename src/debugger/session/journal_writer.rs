@@ -30,31 +30,33 @@ enum Destination {
     Lost(String),
 }
 
+use Destination::*;
+
 impl JournalWriter {
     /// Writes to this journal from now on.
     pub fn write_to(&mut self, journal: Journal) {
-        self.to = Destination::File(journal);
+        self.to = File(journal);
     }
 
     /// Writes to the default path, created with the first entry.
     pub fn write_to_default_path(&mut self) {
-        self.to = Destination::DefaultPath;
+        self.to = DefaultPath;
     }
 
     /// Stores the entries in memory, so that a journal file can be started later.
     pub(super) fn write_to_memory(&mut self) {
-        self.to = Destination::Memory;
+        self.to = Memory;
     }
 
     /// Whether entries are stored, in memory or in a file.
     pub(super) fn is_on(&self) -> bool {
-        !matches!(self.to, Destination::Nowhere)
+        !matches!(self.to, Nowhere)
     }
 
     /// Why the journal failed.
     pub fn lost(&self) -> Option<&str> {
         match &self.to {
-            Destination::Lost(why) => Some(why),
+            Lost(why) => Some(why),
             _ => None,
         }
     }
@@ -62,7 +64,7 @@ impl JournalWriter {
     /// The path of the journal file, if there is one.
     pub fn path(&self) -> Option<&Path> {
         match &self.to {
-            Destination::File(journal) => Some(journal.path()),
+            File(journal) => Some(journal.path()),
             _ => None,
         }
     }
@@ -77,10 +79,10 @@ impl JournalWriter {
     ) -> Result<String, Refusal> {
         let Some(file) = file else {
             return Ok(match &self.to {
-                Destination::File(journal) => {
+                File(journal) => {
                     format!("the journal is written to {}", journal.path().display())
                 }
-                Destination::Lost(why) => {
+                Lost(why) => {
                     format!(
                         "the journal could not be written: {why}. :journal FILE starts a new one"
                     )
@@ -113,7 +115,7 @@ impl JournalWriter {
 
     /// Writes the journal again if its file was deleted, and notes that for the next reply.
     pub(super) fn renew(&mut self, scene: &Scene) {
-        let Destination::File(journal) = &self.to else {
+        let File(journal) = &self.to else {
             return;
         };
         if journal.is_there() {
@@ -122,7 +124,7 @@ impl JournalWriter {
         let path = journal.path().to_owned();
         match Journal::create(&path, scene, &self.entries) {
             Ok(journal) => {
-                self.to = Destination::File(journal);
+                self.to = File(journal);
                 self.trouble = format!(
                     "; {} was deleted and has been rewritten with all its entries ({})",
                     path.display(),
@@ -146,13 +148,13 @@ impl JournalWriter {
         scene: &Scene,
         write: impl FnOnce(&mut Journal) -> Result<(), JournalError>,
     ) {
-        if matches!(self.to, Destination::DefaultPath) {
+        if matches!(self.to, DefaultPath) {
             match Journal::create_default(scene) {
-                Ok(journal) => self.to = Destination::File(journal),
+                Ok(journal) => self.to = File(journal),
                 Err(error) => return self.lose("the journal could not be created", &error),
             }
         }
-        let Destination::File(journal) = &mut self.to else {
+        let File(journal) = &mut self.to else {
             return;
         };
         if let Err(error) = write(journal) {
@@ -161,7 +163,7 @@ impl JournalWriter {
     }
 
     fn lose(&mut self, what: &str, error: &JournalError) {
-        self.to = Destination::Lost(error.to_string());
+        self.to = Lost(error.to_string());
         self.trouble =
             format!("; {what}: {error}; :journal FILE starts a new one with all entries");
     }

@@ -11,8 +11,8 @@ use crate::record::export::{self, ExportSource, Origin};
 use crate::record::snapshot;
 use crate::{DiagnosisPage, Examination, ExportError, ExportScope, PointKind, Snapshot};
 use std::path::PathBuf;
+use stickslip_core::Status;
 use stickslip_core::model::BodyKind;
-use stickslip_core::{State, Status};
 use stickslip_platform::files;
 
 impl Session {
@@ -94,11 +94,10 @@ impl Session {
         if connection.capabilities().problem {
             let way = connection.way_back(timeline, timeline.cursor());
             reply.extend(way.map(|way| way + "; "));
-            let asks = |state: &&State| {
+            connection.reach(Some(state).filter(|state| {
                 let outside = state.outside.as_ref();
                 outside.is_some_and(|outside| outside.asked.is_empty())
-            };
-            connection.reach(Some(state).filter(asks));
+            }));
         }
         self.background
             .ask_examination(timeline.place(), state, nodes, reported);

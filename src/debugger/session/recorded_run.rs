@@ -6,7 +6,7 @@ use crate::history::branches;
 use crate::recorded::calculix::{self, RecordedRun};
 use crate::recorded::exchange::{Line, OpenedExchange};
 use crate::recorded::story::in_common;
-use crate::{PointKind, Recording, Strip};
+use crate::{PointKind, Recording};
 use stickslip_scene::Scene;
 
 impl Session {
@@ -40,8 +40,11 @@ impl Session {
         let mut session = Session::attached(opened.scene, Box::new(solver), opened.log);
         session.take_steps(vec![None; iterations]);
         session.wait();
-        let given_up = |strip: &Strip| strip.kind.is_failure() || strip.kind == PointKind::Cut;
-        let first = session.timeline.strips().iter().position(given_up);
+        let first = session
+            .timeline
+            .strips()
+            .iter()
+            .position(|strip| strip.kind.is_failure() || strip.kind == PointKind::Cut);
         session.rest_at(first.unwrap_or(0));
         session
     }
@@ -64,8 +67,11 @@ impl Session {
 
     /// Adds a path, from the point where it leaves the earlier ones.
     fn add_path(&mut self, line: &Line, done: &[(usize, Line)]) {
-        let common = |(branch, before): &(usize, Line)| (in_common(line, before), *branch);
-        let Some((along, branch)) = done.iter().map(common).max_by_key(|&(along, _)| along) else {
+        let Some((along, branch)) = done
+            .iter()
+            .map(|(branch, before)| (in_common(line, before), *branch))
+            .max_by_key(|&(along, _)| along)
+        else {
             self.take_steps(line.clone());
             self.wait();
             return;

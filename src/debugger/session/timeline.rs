@@ -415,17 +415,16 @@ impl Timeline {
     /// was thinned, or the major iteration has ended.
     fn iterations_reported(&self) -> ReportedIterations {
         let shown = self.frame().state.next;
-        let of_major = |frame: &&Frame| {
-            let event = frame.event.as_ref();
-            frame.is_whole()
-                && frame.intervention.is_none()
-                && event.is_some_and(|event| major(event.position) == major(shown))
-        };
         let frames = &self.frames()[..=self.cursor];
         let mut events: Vec<_> = frames
             .iter()
             .rev()
-            .take_while(of_major)
+            .take_while(|frame| {
+                let event = frame.event.as_ref();
+                frame.is_whole()
+                    && frame.intervention.is_none()
+                    && event.is_some_and(|event| major(event.position) == major(shown))
+            })
             .take(MOST_REPORTED)
             .filter_map(|frame| frame.event.clone())
             .collect();
@@ -448,12 +447,15 @@ impl Timeline {
 
     /// The state at the start of the shown major iteration, unless its frame was thinned.
     pub(super) fn major_start(&self) -> Option<&State> {
-        let begins = |frame: &&Frame| {
-            let state = &frame.state;
-            frame.is_whole() && state.next.minor == 1 && state.status == Status::Running
-        };
         let frames = &self.frames()[..=self.cursor];
-        let state = &frames.iter().rev().find(begins)?.state;
+        let state = &frames
+            .iter()
+            .rev()
+            .find(|frame| {
+                let state = &frame.state;
+                frame.is_whole() && state.next.minor == 1 && state.status == Status::Running
+            })?
+            .state;
         // If the frame of its start was thinned, the whole frame found belongs to another major iteration.
         let shown = self.frame().event.as_ref()?.position;
         (major(shown) == major(state.next)).then_some(state)

@@ -66,8 +66,11 @@ impl IncrementEnd {
     ///
     /// # Errors If none are near the solution.
     pub fn is_quadratic(&self) -> Result<bool, LessonError> {
-        let near = |pair: &&[f64]| (FAR..NEAR).contains(&pair[0]);
-        let mut pairs = self.residuals.windows(2).filter(near).peekable();
+        let mut pairs = self
+            .residuals
+            .windows(2)
+            .filter(|pair| (FAR..NEAR).contains(&pair[0]))
+            .peekable();
         pairs.peek().ok_or(LessonError::NoRate)?;
         Ok(pairs.any(|pair| pair[1] < pair[0].powf(DOUBLING)))
     }

@@ -120,14 +120,11 @@ impl Guess {
         let right = said == next;
         self.right += u32::from(right);
         self.wrong += u32::from(!right);
-        let changed = |&(_, node): &(usize, &stickslip_core::contact::record::ContactRecord)| {
-            node.decision.changes()
-        };
         let nodes = event
             .into_iter()
             .flat_map(|event| event.nodes.iter().enumerate());
         let left = nodes
-            .filter(changed)
+            .filter(|&(_, node)| node.decision.changes())
             .filter(|(slave, _)| !self.said.contains_key(slave));
         let more = self.whose == HiddenDecisions::Changed && left.count() > 0;
         if !more {

@@ -593,8 +593,9 @@ impl LessonReader<'_> {
                 let all = || JudgedLaw::ALL.into_iter().chain(JudgedLaw::OF_BONDS);
                 let law = all().find(|law| law.name() == name);
                 let names = || all().map(JudgedLaw::name).collect::<Vec<_>>().join(", ");
-                let none = || fault!(path, "unknown law {name:?}; laws: {}", names());
-                Truth::Breaks(law.ok_or_else(none)?)
+                Truth::Breaks(
+                    law.ok_or_else(|| fault!(path, "unknown law {name:?}; laws: {}", names()))?,
+                )
             }
             When::Less(a, b) => Truth::Less(self.number(&path, a)?, self.number(&path, b)?),
             When::Close(a, b) => Truth::Close(self.number(&path, a)?, self.number(&path, b)?),

@@ -191,12 +191,12 @@ fn predict(right: u32, tutor: &mut Tutor, session: &mut Session) -> Result<(), P
 /// An answer as listed by the check.
 fn readable(tutor: &Tutor, word: &str) -> String {
     match tutor.question() {
-        Some(question) if question.kind == AnswerKind::Choice => {
+        Some(question) if question.kind() == AnswerKind::Choice => {
             let index = word.parse::<usize>().unwrap_or(1) - 1;
             let text = question.options.get(index).map_or("", String::as_str);
             format!("{word} ({text})")
         }
-        Some(question) if question.kind == AnswerKind::Number => {
+        Some(question) if question.kind() == AnswerKind::Number => {
             word.parse().map_or(word.to_owned(), sig4)
         }
         _ => word.to_owned(),

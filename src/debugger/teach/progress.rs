@@ -106,11 +106,12 @@ impl Progress {
         if !disk::exists(file) {
             return Ok(Progress::default());
         }
-        let unread = |why| ProgressError::Unread {
-            file: file.to_owned(),
-            why,
-        };
-        let text = input::text(file, BYTES, "delete it to start again").map_err(unread)?;
+        let text = input::text(file, BYTES, "delete it to start again").map_err(|why| {
+            ProgressError::Unread {
+                file: file.to_owned(),
+                why,
+            }
+        })?;
         let read: Progress = notation::read(&text).map_err(|e| ProgressError::Damaged {
             file: file.to_owned(),
             line: e.span.start.line,

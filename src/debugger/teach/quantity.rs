@@ -38,134 +38,83 @@ pub enum LessonQuantity {
     Key(&'static str),
 }
 
-/// Quantities of a slave node.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum NodeQuantity {
-    /// Gap (length), negative for penetration.
-    Gap,
-    /// Normal force; compression is positive.
-    Fn,
-    /// Tangential force.
-    Ft,
-    /// The friction bound T_max, force.
-    TMax,
-    /// Slip, length.
-    Slip,
-    /// Factor by which the error of a lagged T_max changes in the next solve.
-    Lag,
-    /// Motion of S* relative to the node along n if all nodes were free, length.
-    FreeN,
-    /// The same along t.
-    FreeT,
-    /// Compliance: motion along n per F_n on the node, length per force.
-    Wnn,
-    /// Motion along n per F_t, and along t per F_n.
-    Wnt,
-    /// Motion along t per F_t.
-    Wtt,
-    /// ρ, the ratio of tangential to normal travel of a node that touches.
-    Ratio,
-    /// Load factor at which the node leaves its mode.
-    Leaves,
-    /// Mode of the shown iteration.
-    Mode,
-    /// Mode of the next iteration.
-    Next,
-    /// The cell of Table 2 that applied, in words.
-    Reason,
-}
+use LessonQuantity::*;
 
-/// Quantities of the solve.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum SolveQuantity {
-    /// The load factor λ.
-    Load,
-    /// Size of the increment, as a load factor.
-    Increment,
-    /// Angle of friction, degrees.
-    Angle,
-    /// Coefficient of friction.
-    Tan,
-    /// Cohesion, force.
-    Cohesion,
-    /// Number of consistent states.
-    Answers,
-    /// Minor iterations until the increment ends.
-    Minors,
-    /// Period of the cycle.
-    Period,
-    /// Major iterations of this increment.
-    Majors,
-    /// The latest relative residual.
-    Residual,
-    /// Number of sliding slave nodes.
-    Sliding,
-    /// The judge's finding, in a sentence.
-    Verdict,
-}
-
-/// Quantities of a run in a chart.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum RunQuantity {
-    /// Relative error.
-    Error,
-    /// Number of factorizations.
-    Factorizations,
+stickslip_core::words! {
+    /// Quantities of a slave node.
+    pub enum NodeQuantity, ALL, word {
+        /// Gap (length), negative for penetration.
+        Gap "gap",
+        /// Normal force; compression is positive.
+        Fn "F_n",
+        /// Tangential force.
+        Ft "F_t",
+        /// The friction bound T_max, force.
+        TMax "T_max",
+        /// Slip, length.
+        Slip "slip",
+        /// Factor by which the error of a lagged T_max changes in the next solve.
+        Lag "lag",
+        /// Motion of S* relative to the node along n if all nodes were free, length.
+        FreeN "v_n",
+        /// The same along t.
+        FreeT "v_t",
+        /// Compliance: motion along n per F_n on the node, length per force.
+        Wnn "W_nn",
+        /// Motion along n per F_t, and along t per F_n.
+        Wnt "W_nt",
+        /// Motion along t per F_t.
+        Wtt "W_tt",
+        /// ρ, the ratio of tangential to normal travel of a node that touches.
+        Ratio "rho",
+        /// Load factor at which the node leaves its mode.
+        Leaves "leaves",
+        /// Mode of the shown iteration.
+        Mode "mode",
+        /// Mode of the next iteration.
+        Next "next",
+        /// The cell of Table 2 that applied, in words.
+        Reason "reason",
+    }
 }
 
 stickslip_core::words! {
-    NodeQuantity, ALL, word:
-    Gap "gap",
-    Fn "F_n",
-    Ft "F_t",
-    TMax "T_max",
-    Slip "slip",
-    Lag "lag",
-    FreeN "v_n",
-    FreeT "v_t",
-    Wnn "W_nn",
-    Wnt "W_nt",
-    Wtt "W_tt",
-    Ratio "rho",
-    Leaves "leaves",
-    Mode "mode",
-    Next "next",
-    Reason "reason",
+    /// Quantities of the solve.
+    pub enum SolveQuantity, ALL, word {
+        /// The load factor λ.
+        Load "load",
+        /// Size of the increment, as a load factor.
+        Increment "increment",
+        /// Angle of friction, degrees.
+        Angle "angle",
+        /// Coefficient of friction.
+        Tan "tan",
+        /// Cohesion, force.
+        Cohesion "cohesion",
+        /// Number of consistent states.
+        Answers "answers",
+        /// Minor iterations until the increment ends.
+        Minors "minors",
+        /// Period of the cycle.
+        Period "period",
+        /// Major iterations of this increment.
+        Majors "majors",
+        /// The latest relative residual.
+        Residual "residual",
+        /// Number of sliding slave nodes.
+        Sliding "sliding",
+        /// The judge's finding, in a sentence.
+        Verdict "verdict",
+    }
 }
 
 stickslip_core::words! {
-    RunQuantity, ALL, word:
-    Error "error",
-    Factorizations "factorizations",
-}
-
-stickslip_core::words! {
-    SolveQuantity, ALL, word:
-    Load "load",
-    Increment "increment",
-    Angle "angle",
-    Tan "tan",
-    Cohesion "cohesion",
-    Answers "answers",
-    Minors "minors",
-    Period "period",
-    Majors "majors",
-    Residual "residual",
-    Sliding "sliding",
-    Verdict "verdict",
-}
-
-impl NodeQuantity {
-    /// Whether it belongs to the frozen interface problem.
-    fn is_frozen(self) -> bool {
-        matches!(
-            self,
-            NodeQuantity::FreeN
-                | NodeQuantity::FreeT
-                | NodeQuantity::Wnn
-                | NodeQuantity::Wnt
-                | NodeQuantity::Wtt
-        )
+    /// Quantities of a run in a chart.
+    pub enum RunQuantity, ALL, word {
+        /// Relative error.
+        Error "error",
+        /// Number of factorizations.
+        Factorizations "factorizations",
     }
 }
 
@@ -179,22 +128,22 @@ impl LessonQuantity {
         if let Some(nodal) = NodeQuantity::from_word(word) {
             return match rest {
                 "" => Err(LessonError::WhichNode(word.into())),
-                node => Ok(LessonQuantity::Of(nodal, action::exact(node, context)?)),
+                node => Ok(Of(nodal, action::exact(node, context)?)),
             };
         }
         if let Some(of) = RunQuantity::from_word(word) {
-            return Ok(LessonQuantity::Run(of, settings(rest)?));
+            return Ok(Run(of, settings(rest)?));
         }
         let whole = SolveQuantity::from_word(word);
         match (word, whole, rest) {
             ("key", _, action) => {
                 let entry = action::ACTIONS.iter().find(|entry| entry.name == action);
                 let key = entry.and_then(|entry| entry.keys.first());
-                let none = || LessonError::NoKey(action.into());
-                key.map(|key| LessonQuantity::Key(key)).ok_or_else(none)
+                key.map(|key| Key(key))
+                    .ok_or_else(|| LessonError::NoKey(action.into()))
             }
-            ("right", _, "") => Ok(LessonQuantity::Right),
-            (_, Some(whole), "") => Ok(LessonQuantity::Solve(whole)),
+            ("right", _, "") => Ok(Right),
+            (_, Some(whole), "") => Ok(Solve(whole)),
             (_, Some(_), _) => Err(LessonError::NotNodal(word.into())),
             _ => Err(unknown(word)),
         }
@@ -205,56 +154,30 @@ impl LessonQuantity {
     /// # Errors If it is not a number or not known.
     pub fn number(&self, look: &FrameValues) -> Result<f64, LessonError> {
         match self {
-            LessonQuantity::Of(nodal, slave) if nodal.is_frozen() => {
-                let of = look.interface(*slave)?;
-                Ok(match nodal {
-                    NodeQuantity::FreeN => of.free[0],
-                    NodeQuantity::FreeT => of.free[1],
-                    NodeQuantity::Wnn => of.compliance[0][0],
-                    NodeQuantity::Wtt => of.compliance[1][1],
-                    _ => of.compliance[0][1],
-                })
-            }
-            LessonQuantity::Of(NodeQuantity::Ratio, slave) => {
-                Ok(look.frame.state.nodes[*slave].ratio)
-            }
-            LessonQuantity::Of(NodeQuantity::Leaves, slave) => look.leaves(*slave),
-            LessonQuantity::Of(nodal, slave) => {
-                let record = look.record(*slave)?;
-                let round_off = RoundOff::new(&look.model, &look.event()?.before);
-                match nodal {
-                    NodeQuantity::Gap => Ok(round_off.length(record.gap)),
-                    NodeQuantity::Fn => Ok(round_off.force(record.f_n)),
-                    NodeQuantity::Ft => Ok(round_off.force(record.f_t)),
-                    NodeQuantity::TMax => Ok(round_off.force(record.t_max)),
-                    NodeQuantity::Slip => Ok(round_off.length(record.slip)),
-                    NodeQuantity::Lag => look.lag(*slave),
-                    _ => Err(LessonError::NoNumber),
-                }
-            }
-            LessonQuantity::Solve(whole) => whole_number(*whole, look),
-            LessonQuantity::Run(of, settings) => {
+            Of(nodal, slave) => nodal.number(*slave, look),
+            Solve(whole) => whole_number(*whole, look),
+            Run(of, settings) => {
                 let run = look.runs()?.of(settings)?;
                 match of {
                     RunQuantity::Error => run.error.ok_or(LessonError::NoError),
                     RunQuantity::Factorizations => Ok(run.factorizations as f64),
                 }
             }
-            LessonQuantity::Written(number) => Ok(*number),
-            LessonQuantity::Right | LessonQuantity::Key(_) => Err(LessonError::NoNumber),
+            Written(number) => Ok(*number),
+            Right | Key(_) => Err(LessonError::NoNumber),
         }
     }
 
     /// Whether the quantity is a number.
     pub fn is_number(&self) -> bool {
         match self {
-            LessonQuantity::Of(nodal, _) => !matches!(
+            Of(nodal, _) => !matches!(
                 nodal,
                 NodeQuantity::Mode | NodeQuantity::Next | NodeQuantity::Reason
             ),
-            LessonQuantity::Solve(whole) => *whole != SolveQuantity::Verdict,
-            LessonQuantity::Run(..) | LessonQuantity::Written(_) => true,
-            LessonQuantity::Right | LessonQuantity::Key(_) => false,
+            Solve(whole) => *whole != SolveQuantity::Verdict,
+            Run(..) | Written(_) => true,
+            Right | Key(_) => false,
         }
     }
 
@@ -262,15 +185,15 @@ impl LessonQuantity {
     /// Hints cannot contain it.
     fn looks_ahead(&self) -> bool {
         match self {
-            LessonQuantity::Right => true,
-            LessonQuantity::Of(of, _) => matches!(
+            Right => true,
+            Of(of, _) => matches!(
                 of,
                 NodeQuantity::Lag
                     | NodeQuantity::Leaves
                     | NodeQuantity::Next
                     | NodeQuantity::Reason
             ),
-            LessonQuantity::Solve(whole) => matches!(
+            Solve(whole) => matches!(
                 whole,
                 SolveQuantity::Answers
                     | SolveQuantity::Minors
@@ -278,27 +201,22 @@ impl LessonQuantity {
                     | SolveQuantity::Majors
                     | SolveQuantity::Verdict
             ),
-            LessonQuantity::Run(..) | LessonQuantity::Written(_) | LessonQuantity::Key(_) => false,
+            Run(..) | Written(_) | Key(_) => false,
         }
     }
 
     /// The quantity as text; `right` is the text of the right answer.
     fn text(&self, look: &FrameValues, right: &str) -> Result<String, LessonError> {
         match self {
-            LessonQuantity::Right => Ok(right.into()),
-            LessonQuantity::Key(key) => Ok((*key).into()),
-            LessonQuantity::Of(NodeQuantity::Mode, slave) => {
-                Ok(names::mode(look.before(*slave)).into())
-            }
-            LessonQuantity::Of(NodeQuantity::Next, slave) => {
-                Ok(names::mode(look.next(*slave)).into())
-            }
-            LessonQuantity::Of(NodeQuantity::Reason, slave) => {
+            Right => Ok(right.into()),
+            Key(key) => Ok((*key).into()),
+            Of(NodeQuantity::Mode, slave) => Ok(names::mode(look.before(*slave)).into()),
+            Of(NodeQuantity::Next, slave) => Ok(names::mode(look.next(*slave)).into()),
+            Of(NodeQuantity::Reason, slave) => {
                 let record = look.record(*slave)?;
                 Ok(report::reason(&record.decision, record.t_max != 0.0))
             }
-            LessonQuantity::Of(..) => self.number(look).map(sig4),
-            LessonQuantity::Solve(SolveQuantity::Verdict) => {
+            Solve(SolveQuantity::Verdict) => {
                 let worst = look
                     .verdict()?
                     .broken()
@@ -308,8 +226,35 @@ impl LessonQuantity {
                     None => "all laws are satisfied".into(),
                 })
             }
-            LessonQuantity::Solve(_) | LessonQuantity::Run(..) | LessonQuantity::Written(_) => {
-                self.number(look).map(sig4)
+            Of(..) | Solve(_) | Run(..) | Written(_) => self.number(look).map(sig4),
+        }
+    }
+}
+
+impl NodeQuantity {
+    fn number(self, slave: usize, look: &FrameValues) -> Result<f64, LessonError> {
+        let frozen = || look.interface(slave);
+        let record = look.record(slave);
+        let round_off =
+            || -> Result<_, LessonError> { Ok(RoundOff::new(&look.model, &look.event()?.before)) };
+        let force = |force: f64| Ok(round_off()?.force(force));
+        let length = |length: f64| Ok(round_off()?.length(length));
+        match self {
+            NodeQuantity::FreeN => Ok(frozen()?.free[0]),
+            NodeQuantity::FreeT => Ok(frozen()?.free[1]),
+            NodeQuantity::Wnn => Ok(frozen()?.compliance[0][0]),
+            NodeQuantity::Wnt => Ok(frozen()?.compliance[0][1]),
+            NodeQuantity::Wtt => Ok(frozen()?.compliance[1][1]),
+            NodeQuantity::Ratio => Ok(look.frame.state.nodes[slave].ratio),
+            NodeQuantity::Leaves => look.leaves(slave),
+            NodeQuantity::Gap => length(record?.gap),
+            NodeQuantity::Fn => force(record?.f_n),
+            NodeQuantity::Ft => force(record?.f_t),
+            NodeQuantity::TMax => force(record?.t_max),
+            NodeQuantity::Slip => length(record?.slip),
+            NodeQuantity::Lag => look.lag(slave),
+            NodeQuantity::Mode | NodeQuantity::Next | NodeQuantity::Reason => {
+                Err(LessonError::NoNumber)
             }
         }
     }
@@ -351,7 +296,7 @@ fn whole_number(whole: SolveQuantity, look: &FrameValues) -> Result<f64, LessonE
 /// # Errors As [`LessonQuantity::read`], and if the quantity is not a number.
 pub fn number(text: &str, context: &Context) -> Result<LessonQuantity, LessonError> {
     match text.trim().parse() {
-        Ok(number) => Ok(LessonQuantity::Written(number)),
+        Ok(number) => Ok(Written(number)),
         Err(_) => match LessonQuantity::read(text.trim(), context)? {
             quantity if quantity.is_number() => Ok(quantity),
             _ => Err(LessonError::NoNumber),
@@ -363,15 +308,16 @@ pub fn number(text: &str, context: &Context) -> Result<LessonQuantity, LessonErr
 ///
 /// # Errors If they cannot be parsed.
 pub fn settings(text: &str) -> Result<Vec<(String, String)>, LessonError> {
-    let setting = |word: &str| {
-        let (path, value) = word.split_once('=')?;
-        Some((path.to_owned(), value.to_owned()))
-    };
-    let settings: Option<Vec<_>> = text.split_whitespace().map(setting).collect();
-    let none = || LessonError::NoRun(text.to_owned());
+    let settings: Option<Vec<_>> = text
+        .split_whitespace()
+        .map(|word| {
+            let (path, value) = word.split_once('=')?;
+            Some((path.to_owned(), value.to_owned()))
+        })
+        .collect();
     settings
         .filter(|settings| !settings.is_empty())
-        .ok_or_else(none)
+        .ok_or_else(|| LessonError::NoRun(text.to_owned()))
 }
 
 fn unknown(word: &str) -> LessonError {
@@ -419,11 +365,10 @@ impl Template {
     /// # Errors
     /// [`LessonError::TellsAnswer`] if it is not allowed.
     pub fn check_hint(&self, asked: Option<&LessonQuantity>) -> Result<(), LessonError> {
-        let tells = |piece: &Piece| match piece {
+        if self.0.iter().any(|piece| match piece {
             Piece::Value(quantity) => quantity.looks_ahead() || Some(quantity) == asked,
             Piece::Words(_) => false,
-        };
-        if self.0.iter().any(tells) {
+        }) {
             Err(LessonError::TellsAnswer)
         } else {
             Ok(())
@@ -434,10 +379,12 @@ impl Template {
     ///
     /// # Errors If a value is not known.
     pub fn fill(&self, look: &FrameValues, right: &str) -> Result<String, LessonError> {
-        let piece = |piece: &Piece| match piece {
-            Piece::Words(words) => Ok(words.clone()),
-            Piece::Value(quantity) => quantity.text(look, right),
-        };
-        self.0.iter().map(piece).collect()
+        self.0
+            .iter()
+            .map(|piece| match piece {
+                Piece::Words(words) => Ok(words.clone()),
+                Piece::Value(quantity) => quantity.text(look, right),
+            })
+            .collect()
     }
 }

@@ -17,8 +17,6 @@ const CLOSE: f64 = 0.05;
 /// An open question, with its answer.
 #[derive(Debug, Clone)]
 pub struct TutorQuestion {
-    /// How it is answered.
-    pub kind: AnswerKind,
     /// The choices, if there are any.
     pub options: Vec<String>,
     right: RightAnswer,
@@ -59,54 +57,34 @@ impl TutorQuestion {
             let record = look.record(slave)?;
             Ok((slave, record.decision, record.t_max != 0.0))
         };
-        let (kind, options, right, node) = match &ask.answer {
+        let (mut options, mut node) = (Vec::new(), None);
+        let right = match &ask.answer {
             Answer::Mode(slave) => {
-                let node = found(*slave)?;
-                (
-                    AnswerKind::Mode,
-                    Vec::new(),
-                    RightAnswer::Mode(node.1.next),
-                    Some(node),
-                )
+                let found = found(*slave)?;
+                node = Some(found);
+                RightAnswer::Mode(found.1.next)
             }
             Answer::Rule(slave) => {
-                let node = found(*slave)?;
-                let (options, right) = cells(&node.1)?;
-                (
-                    AnswerKind::Choice,
-                    options,
-                    RightAnswer::Choice(right),
-                    Some(node),
-                )
+                let found = found(*slave)?;
+                node = Some(found);
+                let right;
+                (options, right) = cells(&found.1)?;
+                RightAnswer::Choice(right)
             }
             Answer::Number(quantity, tolerance) => {
-                let value = quantity.number(&look)?;
+                let (value, tolerance) = (quantity.number(&look)?, *tolerance);
                 if !value.is_finite() {
                     return Err(LessonError::NotFinite);
                 }
-                let tolerance = *tolerance;
-                (
-                    AnswerKind::Number,
-                    Vec::new(),
-                    RightAnswer::Number { value, tolerance },
-                    None,
-                )
+                RightAnswer::Number { value, tolerance }
             }
             Answer::Choice(choices) => {
-                let options = choices
-                    .iter()
-                    .map(|(text, _)| text.fill(now, "…"))
-                    .collect::<Result<_, _>>()?;
-                (
-                    AnswerKind::Choice,
-                    options,
-                    RightAnswer::Choice(chosen(choices, &look)?),
-                    None,
-                )
+                let texts = choices.iter().map(|(text, _)| text.fill(now, "…"));
+                options = texts.collect::<Result<_, _>>()?;
+                RightAnswer::Choice(chosen(choices, &look)?)
             }
         };
         let mut question = TutorQuestion {
-            kind,
             options,
             right,
             node,
@@ -139,12 +117,20 @@ impl TutorQuestion {
         }
     }
 
+    /// How it is answered.
+    pub fn kind(&self) -> AnswerKind {
+        match self.right {
+            RightAnswer::Mode(_) => AnswerKind::Mode,
+            RightAnswer::Choice(_) => AnswerKind::Choice,
+            RightAnswer::Number { .. } => AnswerKind::Number,
+        }
+    }
+
     /// The right answer in words.
     fn words(&self) -> String {
-        match &self.right {
-            RightAnswer::Mode(mode) => names::mode(*mode).into(),
-            RightAnswer::Choice(index) => format!("{}", index + 1),
-            RightAnswer::Number { value, .. } => sig4(*value),
+        match self.right {
+            RightAnswer::Number { value, .. } => sig4(value),
+            _ => self.solution(),
         }
     }
 
@@ -242,12 +228,15 @@ fn cells(decision: &Decision) -> Result<(Vec<String>, usize), LessonError> {
         return Err(LessonError::NoCell);
     }
     let place = |mode: Mode| MODES.iter().position(|m| *m == mode).unwrap_or(0);
-    let cell = |(column, mode): (usize, &Mode)| {
-        let [first, second] = TABLE_2[place(decision.before)][column];
-        let and = if second.is_empty() { "" } else { " and " };
-        format!("{first}{and}{second}: {}", names::mode(*mode))
-    };
-    let options = MODES.iter().enumerate().map(cell).collect();
+    let options = MODES
+        .iter()
+        .enumerate()
+        .map(|(column, mode)| {
+            let [first, second] = TABLE_2[place(decision.before)][column];
+            let and = if second.is_empty() { "" } else { " and " };
+            format!("{first}{and}{second}: {}", names::mode(*mode))
+        })
+        .collect();
     Ok((options, place(decision.next)))
 }
 

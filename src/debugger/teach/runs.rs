@@ -46,8 +46,9 @@ impl Runs {
             };
             precision::run(&planned, measure, &watch).map_err(|e| e.to_string())
         });
-        let failed = |why: &String| LessonError::NoChart(why.clone());
-        measured.as_ref().map_err(failed)
+        measured
+            .as_ref()
+            .map_err(|why| LessonError::NoChart(why.clone()))
     }
 
     /// The run with these settings.
@@ -82,8 +83,7 @@ impl Runs {
         let own = self.of(settings)?;
         let near = |point: &&Point| point.error.is_some_and(|own| own <= error);
         let mut points = self.measure()?.points.iter().filter(near);
-        let cheaper = |other: &Point| other.factorizations < own.factorizations;
-        Ok(near(&own) && !points.any(cheaper))
+        Ok(near(&own) && !points.any(|other| other.factorizations < own.factorizations))
     }
 }
 

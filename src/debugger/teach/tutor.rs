@@ -508,10 +508,7 @@ impl Tutor {
     /// What to do next, in a few words.
     pub fn todo(&self) -> String {
         let on = "Space continues".to_owned();
-        match (
-            self.step(),
-            self.question.as_ref().map(|question| question.kind),
-        ) {
+        match (self.step(), self.question.as_ref().map(TutorQuestion::kind)) {
             (None, _) => match self.next_lesson() {
                 Some(next) => format!("Space opens the next lesson, {next}"),
                 None => "the lesson has ended".into(),

@@ -192,11 +192,13 @@ impl CalculixFiles {
         let counted = norms.map(|norms| u64::from(norms.elements));
         let listed = listed.map(|part| self.elements(part));
         let kept = self.before().map(|before| self.elements(&before));
-        let fits = |counted: u64| match listed {
-            Some(listed) => listed == counted,
-            None => counted == 0 || kept == Some(counted),
-        };
-        match (counted.is_none_or(fits), self.differs) {
+        match (
+            counted.is_none_or(|counted| match listed {
+                Some(listed) => listed == counted,
+                None => counted == 0 || kept == Some(counted),
+            }),
+            self.differs,
+        ) {
             (true, before) => before,
             (false, None) => Some((at, 1)),
             (false, Some((first, count))) => Some((first, count + 1)),

@@ -6,6 +6,8 @@ use super::reader::{MeshKind, Names, Reader};
 use super::source::{DeckLocation, Done, Fault, plain};
 use crate::bail;
 use crate::mesh::CellKind;
+use CellKind::*;
+use MeshKind::*;
 
 /// Maximum number of members of all sets and surfaces together, and of loads on members of sets: more than a plane mesh needs,
 /// and few enough to fit in memory.
@@ -55,8 +57,8 @@ impl Names {
             );
         }
         let labels = match kind {
-            MeshKind::Nodes => &self.nodes,
-            MeshKind::Elements => &self.elements,
+            Nodes => &self.nodes,
+            Elements => &self.elements,
         };
         let within = labels
             .range(self.number(from)..=self.number(to))
@@ -101,7 +103,7 @@ impl Reader {
         }
         self.add(
             card,
-            MeshKind::Nodes,
+            Nodes,
             "NSET",
             (first..self.deck.nodes.len()).collect(),
         )
@@ -110,13 +112,13 @@ impl Reader {
     pub(super) fn elements(&mut self, card: &Card<'_>) -> Done {
         let kind = element_type(card, self.is_outline)?;
         let count = kind.cell.nodes();
-        if kind.cell == CellKind::Quad4 && kind.reduced {
+        if kind.cell == Quad4 && kind.reduced {
             self.deck.add_note(
                 card.place_of("TYPE"),
                 "CPE4R, CPS4R and CAX4R have one integration point; 5 % of full integration controls hourglass modes, which each \
                  code does differently, so bending of coarse meshes differs",
             );
-        } else if matches!(kind.cell, CellKind::Triangle3 | CellKind::Quad4) {
+        } else if matches!(kind.cell, Triangle3 | Quad4) {
             self.deck.add_note(
             card.place_of("TYPE"),
             "elements with 3 and 4 nodes are fully integrated plane elements; CalculiX expands them to \
@@ -177,18 +179,18 @@ impl Reader {
         }
         self.add(
             card,
-            MeshKind::Elements,
+            Elements,
             "ELSET",
             (first..self.deck.elements.len()).collect(),
         )
     }
 
     pub(super) fn node_set(&mut self, card: &Card<'_>) -> Done {
-        self.set(card, MeshKind::Nodes, "NSET")
+        self.set(card, Nodes, "NSET")
     }
 
     pub(super) fn element_set(&mut self, card: &Card<'_>) -> Done {
-        self.set(card, MeshKind::Elements, "ELSET")
+        self.set(card, Elements, "ELSET")
     }
 
     fn set(&mut self, card: &Card<'_>, kind: MeshKind, parameter: &str) -> Done {
@@ -221,8 +223,8 @@ impl Reader {
     pub(super) fn members_of(&self, cell: &CardCell<'_>, kind: MeshKind) -> Done<Vec<usize>> {
         let word = kind.word();
         let (sets, all) = match kind {
-            MeshKind::Nodes => (&self.names.node_sets, &self.deck.node_sets),
-            MeshKind::Elements => (&self.names.element_sets, &self.deck.element_sets),
+            Nodes => (&self.names.node_sets, &self.deck.node_sets),
+            Elements => (&self.names.element_sets, &self.deck.element_sets),
         };
         let name = plain(cell.text);
         match self.names.labelled(&name, kind) {
@@ -243,8 +245,8 @@ impl Reader {
     /// Index of a set by name.
     pub(super) fn set_of(&self, name: &str, place: DeckLocation, kind: MeshKind) -> Done<usize> {
         let sets = match kind {
-            MeshKind::Nodes => &self.names.node_sets,
-            MeshKind::Elements => &self.names.element_sets,
+            Nodes => &self.names.node_sets,
+            Elements => &self.names.element_sets,
         };
         match sets.get(&self.names.name(name)) {
             Some(set) => Ok(*set),
@@ -288,8 +290,8 @@ impl Reader {
             );
         }
         let (sets, all) = match kind {
-            MeshKind::Nodes => (&mut self.names.node_sets, &mut self.deck.node_sets),
-            MeshKind::Elements => (&mut self.names.element_sets, &mut self.deck.element_sets),
+            Nodes => (&mut self.names.node_sets, &mut self.deck.node_sets),
+            Elements => (&mut self.names.element_sets, &mut self.deck.element_sets),
         };
         let set = *sets.entry(name.to_owned()).or_insert_with(|| {
             all.push(Set {
@@ -315,7 +317,7 @@ impl Reader {
                 let mut members = Vec::new();
                 for line in &card.lines {
                     if let Some(cell) = cells(*line).first() {
-                        members.extend(self.members_of(cell, MeshKind::Nodes)?);
+                        members.extend(self.members_of(cell, Nodes)?);
                         fits(&members, cell, "surface")?;
                     }
                 }
@@ -364,7 +366,7 @@ impl Reader {
                     "the side is missing; write the element and the side, e.g. \"12, S2\""
                 );
             };
-            for element in self.members_of(first, MeshKind::Elements)? {
+            for element in self.members_of(first, Elements)? {
                 sides.push((element, side_of(label, 'S', &self.deck.elements[element])?));
             }
             fits(&sides, first, "surface")?;
@@ -389,12 +391,12 @@ pub(super) fn element_type(card: &Card<'_>, solids: bool) -> Done<ElementType> {
 /// The cell of a three-dimensional element type.
 fn solid(name: &str) -> Option<CellKind> {
     Some(match name {
-        "C3D4" => CellKind::Tetra4,
-        "C3D6" => CellKind::Wedge6,
-        "C3D8" | "C3D8R" | "C3D8I" => CellKind::Hexa8,
-        "C3D10" | "C3D10T" | "C3D10M" => CellKind::Tetra10,
-        "C3D15" => CellKind::Wedge15,
-        "C3D20" | "C3D20R" => CellKind::Hexa20,
+        "C3D4" => Tetra4,
+        "C3D6" => Wedge6,
+        "C3D8" | "C3D8R" | "C3D8I" => Hexa8,
+        "C3D10" | "C3D10T" | "C3D10M" => Tetra10,
+        "C3D15" => Wedge15,
+        "C3D20" | "C3D20R" => Hexa20,
         _ => return None,
     })
 }
@@ -403,12 +405,12 @@ fn kind_of(name: &str) -> Result<ElementType, String> {
     const RIGHT: &str = "supported are CPE, CPS and CAX with 3, 4, 4R, 6, 8 and 8R, and B21, B22, B31, B31R, B32, B32R";
     let plane = |family: Family, rest: &str| {
         let (cell, reduced) = match rest {
-            "3" => (CellKind::Triangle3, false),
-            "4" => (CellKind::Quad4, false),
-            "6" => (CellKind::Triangle6, false),
-            "8" => (CellKind::Quad8, false),
-            "8R" => (CellKind::Quad8, true),
-            "4R" => (CellKind::Quad4, true),
+            "3" => (Triangle3, false),
+            "4" => (Quad4, false),
+            "6" => (Triangle6, false),
+            "8" => (Quad8, false),
+            "8R" => (Quad8, true),
+            "4R" => (Quad4, true),
             _ => {
                 return Err(format!(
                     "elements of type {} are not supported; {RIGHT}",
@@ -430,8 +432,8 @@ fn kind_of(name: &str) -> Result<ElementType, String> {
         })
     };
     match name {
-        "B21" | "B31" | "B31R" => return beam(CellKind::Line2),
-        "B22" | "B32" | "B32R" => return beam(CellKind::Line3),
+        "B21" | "B31" | "B31R" => return beam(Line2),
+        "B22" | "B32" | "B32R" => return beam(Line3),
         _ => {}
     }
     let families = [

@@ -168,13 +168,12 @@ pub(super) fn check_axis(
             body.name
         );
     }
-    let over = |node: &&usize| names.nodes[**node].at[0] < -limits::SHORTEST * length;
     let nodes = bodies.iter().flat_map(|body| &body.nodes);
     let Some(node) = nodes
         .copied()
         .collect::<Vec<_>>()
         .iter()
-        .find(over)
+        .find(|node| names.nodes[**node].at[0] < -limits::SHORTEST * length)
         .copied()
     else {
         return Ok(());

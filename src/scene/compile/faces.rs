@@ -50,12 +50,11 @@ pub(super) fn spread(
             pairs.push(pair);
             continue;
         }
-        let own = |side: &&AreaSide<'_>| {
-            side.nodes
-                .iter()
-                .all(|&node| pairs_of[node].contains(&pair))
-        };
-        for side in sides.iter().filter(own) {
+        let of_pair = sides.iter().filter(|side| {
+            let mut nodes = side.nodes.iter();
+            nodes.all(|&node| pairs_of[node].contains(&pair))
+        });
+        for side in of_pair {
             let borders = borders(side, surfaces, &slave.surfaces, &places);
             let ends = [side.nodes[0], side.nodes[side.nodes.len() - 1]];
             let [from, to] = ends.map(|node| names.nodes[node].name.clone());
@@ -128,10 +127,11 @@ fn rule(borders: &[f64], nodes: usize) -> Vec<(f64, f64)> {
     let parts = borders
         .windows(2)
         .map(|part| (0.5 * (part[0] + part[1]), 0.5 * (part[1] - part[0])));
-    let on = |(middle, half): (f64, f64)| {
-        gauss(count)
-            .into_iter()
-            .map(move |(x, weight)| (middle + half * x, half * weight))
-    };
-    parts.flat_map(on).collect()
+    parts
+        .flat_map(|(middle, half)| {
+            gauss(count)
+                .into_iter()
+                .map(move |(x, weight)| (middle + half * x, half * weight))
+        })
+        .collect()
 }

@@ -96,12 +96,14 @@ fn of_legs(history: &History) -> Result<(), Fault> {
 pub fn increments(path: &[f64], size: impl Fn(usize) -> f64) -> f64 {
     // A leg of length 1 has exactly ten increments of 0.1, despite round-off.
     const ROUNDING: f64 = 1e-9;
-    let of_leg = |(leg, pair): (usize, &[f64])| {
-        ((pair[1] - pair[0]).abs() / size(leg) * (1.0 - ROUNDING))
-            .ceil()
-            .max(1.0)
-    };
-    path.windows(2).enumerate().map(of_leg).sum()
+    path.windows(2)
+        .enumerate()
+        .map(|(leg, pair)| {
+            ((pair[1] - pair[0]).abs() / size(leg) * (1.0 - ROUNDING))
+                .ceil()
+                .max(1.0)
+        })
+        .sum()
 }
 
 /// Rejects invalid memory sizes.

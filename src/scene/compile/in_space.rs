@@ -46,8 +46,12 @@ pub(super) fn compile(spec: &Spec, problem: &SpaceSpec) -> Result<(Model, Names)
     let sides = [[0, 1], [1, 2], [2, 3], [3, 0]];
     let sides = sides.map(|ends| ends.map(|end| count + end).to_vec());
     let floor = Surface::new("floor", sides.to_vec(), true);
-    let contact = |(k, (_, friction)): (usize, &(_, _))| Contact::new(k, vec![0], *friction);
-    let contacts = problem.contacts.iter().enumerate().map(contact).collect();
+    let contacts = problem
+        .contacts
+        .iter()
+        .enumerate()
+        .map(|(k, (_, friction))| Contact::new(k, vec![0], *friction))
+        .collect();
     let mut model = Model {
         about: spec.about.clone(),
         settings: spec.settings,

@@ -65,8 +65,10 @@ pub(super) fn surfaces(spec: &Spec, names: &Names, length: f64) -> Result<Surfac
             }
         }
         if surface.cut {
-            let cut = |elements| corners::cut(elements, &names.nodes);
-            pieces = pieces.into_iter().flat_map(cut).collect();
+            pieces = pieces
+                .into_iter()
+                .flat_map(|elements| corners::cut(elements, &names.nodes))
+                .collect();
         }
         let several = pieces.len() > 1;
         if surface.endless && surface.past_ends != 0.0 {

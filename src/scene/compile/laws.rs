@@ -230,18 +230,17 @@ pub(super) fn check_corners(
 
 /// Whether two surfaces cross or meet at an angle; each is treated as straight between nodes.
 fn cross(nodes: &[Node], surfaces: [&Surface; 2]) -> bool {
-    let sides = |surface: &Surface| -> Vec<[[f64; 2]; 2]> {
+    let on = |part: f64, surface: &Surface| {
+        surface.endless || (-TOUCHES..=1.0 + TOUCHES).contains(&part)
+    };
+    let [one, other] = surfaces.map(|surface| -> Vec<[[f64; 2]; 2]> {
         surface
             .elements
             .iter()
             .flat_map(|element| element.windows(2))
             .map(|pair| [nodes[pair[0]].at, nodes[pair[1]].at])
             .collect()
-    };
-    let on = |part: f64, surface: &Surface| {
-        surface.endless || (-TOUCHES..=1.0 + TOUCHES).contains(&part)
-    };
-    let [one, other] = surfaces.map(sides);
+    });
     one.iter().any(|&[a, b]| {
         other.iter().any(|&[c, d]| {
             let (r, u) = (minus(b, a), minus(d, c));

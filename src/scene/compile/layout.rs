@@ -36,13 +36,17 @@ impl Layout {
     /// Three degrees of freedom for each beam node, two for other nodes; none is restrained yet.
     pub(super) fn new(on_body: Vec<bool>, bodies: &[Body]) -> Self {
         let dofs = Dofs::new(on_body.len(), bodies);
-        let components = |(node, &count): (usize, &u8)| {
-            COMPONENTS
-                .iter()
-                .take(count.into())
-                .map(move |component| (node, *component))
-        };
-        let of = dofs.count.iter().enumerate().flat_map(components).collect();
+        let of = dofs
+            .count
+            .iter()
+            .enumerate()
+            .flat_map(|(node, &count)| {
+                COMPONENTS
+                    .iter()
+                    .take(count.into())
+                    .map(move |component| (node, *component))
+            })
+            .collect();
         Layout {
             dofs,
             of,

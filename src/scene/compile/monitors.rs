@@ -90,8 +90,8 @@ fn watched(
 ) -> Result<MonitorQuantity, Fault> {
     let node_of = |name: &str| names.node(name).at(here.then("node"));
     let dof_of = |node, component| {
-        let fault = || Fault::new(here.then("component"), no_rotation(names, node));
-        dofs.dof(node, component).ok_or_else(fault)
+        dofs.dof(node, component)
+            .ok_or_else(|| Fault::new(here.then("component"), no_rotation(names, node)))
     };
     match quantity {
         Quantity::Displacement { node, component } => Ok(MonitorQuantity::Displacement {

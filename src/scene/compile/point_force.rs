@@ -27,8 +27,10 @@ pub(super) fn find_gives(
     }
     let smooth = |surface: &Surface| !surface.smooth.is_empty();
     for surface in surfaces.iter_mut().filter(|surface| !smooth(surface)) {
-        let found = |element: &Vec<usize>| gives.get(&walked(element)).copied();
-        let all = surface.elements.iter().map(found);
+        let all = surface
+            .elements
+            .iter()
+            .map(|element| gives.get(&walked(element)).copied());
         if all.clone().any(|give| give.is_some()) {
             surface.gives = all.map(Option::unwrap_or_default).collect();
         }

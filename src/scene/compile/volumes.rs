@@ -53,8 +53,10 @@ fn parts<'b>(
         })
     };
     let of = |solid: &'b Solid| {
-        let with = |element: &'b SolidElement| (element, &solid.materials[element.material]);
-        solid.elements.iter().map(with)
+        solid
+            .elements
+            .iter()
+            .map(|element| (element, &solid.materials[element.material]))
     };
     if let Some((_, solid)) = solids().find(|(body, _)| body.name == on) {
         return Ok(of(solid).collect());
@@ -93,8 +95,11 @@ pub(super) fn expanding(bodies: &[Body], on: &str) -> Result<usize, String> {
             solids.map(|(name, _)| name),
         ));
     };
-    let linear = |m: &Elastic| m.law == Law::Svk && m.update != Update::Updated;
-    if !solid.materials.iter().all(linear) {
+    if !solid
+        .materials
+        .iter()
+        .all(|m| m.law == Law::Svk && m.update != Update::Updated)
+    {
         return Err(format!(
             "body {on:?} cannot expand: this needs law svk, and update total or small"
         ));

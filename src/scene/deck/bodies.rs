@@ -21,8 +21,10 @@ impl DeckObjects<'_> {
     /// Creates the mesh, its bodies and their materials.
     pub(super) fn bodies(&mut self, nlgeom: bool) -> Result<(), Fault> {
         let section_of = self.sections()?;
-        let material = |&section: &usize| self.deck.sections[section].material;
-        self.material_of = section_of.iter().map(material).collect();
+        self.material_of = section_of
+            .iter()
+            .map(|&section| self.deck.sections[section].material)
+            .collect();
         let parts = self.parts(&section_of);
         let cells = self.solids(&parts, nlgeom)?;
         if cells.is_empty() {
@@ -200,8 +202,12 @@ impl DeckObjects<'_> {
         name: &str,
         wanted: impl Fn(String) -> Material,
     ) -> String {
-        let same = |material: &&Material| **material == wanted(material.id().to_owned());
-        if let Some(known) = self.spec.materials.iter().find(same) {
+        if let Some(known) = self
+            .spec
+            .materials
+            .iter()
+            .find(|material| **material == wanted(material.id().to_owned()))
+        {
             return known.id().to_owned();
         }
         let id = self.free.take(name);

@@ -153,8 +153,10 @@ impl DeckObjects<'_> {
     }
 
     fn slaves_of(&self, surface: usize) -> Vec<usize> {
-        let used = |node: &usize| self.used[*node];
-        self.nodes_of(surface).into_iter().filter(used).collect()
+        self.nodes_of(surface)
+            .into_iter()
+            .filter(|node| self.used[*node])
+            .collect()
     }
 
     /// The master surfaces as lines of sides, with the ids of their connected parts.
@@ -211,8 +213,10 @@ impl DeckObjects<'_> {
 
     /// The nodes of sides of elements.
     fn node_lists(&self, sides: &[(usize, usize)]) -> Vec<Vec<usize>> {
-        let nodes = |&(element, side): &(usize, usize)| self.deck.side(element, side);
-        sides.iter().map(nodes).collect()
+        sides
+            .iter()
+            .map(|&(element, side)| self.deck.side(element, side))
+            .collect()
     }
 
     /// Whether to smooth a master surface without real corners: its slave nodes have a compliant law, and it can deform.
@@ -223,9 +227,13 @@ impl DeckObjects<'_> {
             // Points of faces integrate over the sides themselves.
             touching.master == master && touching.laws.by.is_node() && gives
         };
-        let moves = |node: &usize| self.still[*node] != [true; 2];
         let sides = self.node_lists(sides);
-        all.iter().any(gives) && sides.len() > 1 && sides.iter().flatten().any(moves)
+        all.iter().any(gives)
+            && sides.len() > 1
+            && sides
+                .iter()
+                .flatten()
+                .any(|node| self.still[*node] != [true; 2])
     }
 
     /// Whether these sides have a real convex corner, and a real concave one.
@@ -441,11 +449,10 @@ impl DeckObjects<'_> {
             Some(Adjust::Within(gap)) => *gap,
             Some(Adjust::Set(set)) => {
                 let members = &self.deck.node_sets[*set].members;
-                let missing = |node: &usize| members.binary_search(node).is_err();
                 let slaves = pairs
                     .iter()
                     .flat_map(|pair| self.slaves_of(pair.slave))
-                    .find(missing);
+                    .find(|node| members.binary_search(node).is_err());
                 if let Some(node) = slaves {
                     bail!(
                         first.place,
@@ -497,12 +504,15 @@ impl DeckObjects<'_> {
             .tolerance
             .unwrap_or(TOLERANCE * whole / sides.len().max(1) as f64);
         let slaves = self.slaves_of(tie.slave);
-        let is_near = |node: &usize| {
-            lines
-                .iter()
-                .any(|(a, b)| distance_to_segment(at(node), *a, *b) <= tolerance)
-        };
-        let near: Vec<usize> = slaves.iter().copied().filter(is_near).collect();
+        let near: Vec<usize> = slaves
+            .iter()
+            .copied()
+            .filter(|node| {
+                lines
+                    .iter()
+                    .any(|(a, b)| distance_to_segment(at(node), *a, *b) <= tolerance)
+            })
+            .collect();
         if near.is_empty() {
             bail!(
                 tie.place,

@@ -149,10 +149,13 @@ impl StepLoad<'_> {
                 time
             }
         };
-        let by_amplitude = |&(value, amplitude): &(f64, Option<usize>)| {
-            amplitude.map(|a| value * interpolated(&self.amplitudes[a].points, own(a)))
-        };
-        let swung: f64 = self.loads.iter().filter_map(by_amplitude).sum();
+        let swung: f64 = self
+            .loads
+            .iter()
+            .filter_map(|&(value, amplitude)| {
+                amplitude.map(|a| value * interpolated(&self.amplitudes[a].points, own(a)))
+            })
+            .sum();
         let plain: Vec<f64> = self
             .loads
             .iter()
@@ -175,15 +178,14 @@ impl StepLoad<'_> {
 
     /// Times within the step at which the value has a corner; `from` is included if it is not 0.
     fn corners(&self, from: f64) -> Vec<f64> {
-        let of_amplitude = |&(_, amplitude): &(f64, Option<usize>)| {
-            let amplitude = &self.amplitudes[amplitude?];
-            let begin = if amplitude.total { self.begin } else { 0.0 };
-            Some(amplitude.points.iter().map(move |(time, _)| time - begin))
-        };
         let mut corners: Vec<f64> = self
             .loads
             .iter()
-            .filter_map(of_amplitude)
+            .filter_map(|&(_, amplitude)| {
+                let amplitude = &self.amplitudes[amplitude?];
+                let begin = if amplitude.total { self.begin } else { 0.0 };
+                Some(amplitude.points.iter().map(move |(time, _)| time - begin))
+            })
             .flatten()
             .collect();
         corners.push(from);

@@ -29,8 +29,10 @@ type TimedValue = (f64, Vec<(f64, f64)>);
 
 /// Nodal values in the form that [`DeckObjects::courses`] takes.
 fn listed(values: &[Value]) -> Vec<StepValue<(usize, Direction)>> {
-    let one = |value: &Value| (value.target(), value.value, value.amplitude, value.place);
-    values.iter().map(one).collect()
+    values
+        .iter()
+        .map(|value| (value.target(), value.value, value.amplitude, value.place))
+        .collect()
 }
 
 /// Points of a curve as a comparison key.
@@ -67,12 +69,14 @@ impl DeckObjects<'_> {
     ) -> BTreeMap<T, Course> {
         let steps = &self.deck.steps;
         let empty = || -> Vec<StepValues> {
-            let of = |step: &Step| StepValues {
-                values: Vec::new(),
-                new: new(step),
-                at_once: step.at_once,
-            };
-            steps.iter().map(of).collect()
+            steps
+                .iter()
+                .map(|step| StepValues {
+                    values: Vec::new(),
+                    new: new(step),
+                    at_once: step.at_once,
+                })
+                .collect()
         };
         let mut courses = BTreeMap::new();
         for (k, step) in steps.iter().enumerate() {
@@ -444,8 +448,9 @@ impl DeckObjects<'_> {
         let deck = self.deck;
         let warmed = |step: &Step| {
             let values = step.temperatures.iter();
-            let one = |v: &Value| (v.node, v.value, v.amplitude, v.place);
-            values.map(one).collect()
+            values
+                .map(|v| (v.node, v.value, v.amplitude, v.place))
+                .collect()
         };
         let courses = self.courses(warmed, |step| step.new_temperatures, false);
         if courses.is_empty() {

@@ -249,16 +249,17 @@ impl Problem {
             contacts: self.contacts.iter().map(contact).collect(),
             compliance: match &self.matrix {
                 Matrix::Entries(entries) => entries.clone(),
-                Matrix::Compliance(rows) | Matrix::Stiffness(rows) => {
-                    let row = |(i, row): (usize, &Vec<f64>)| {
+                Matrix::Compliance(rows) | Matrix::Stiffness(rows) => rows
+                    .iter()
+                    .enumerate()
+                    .flat_map(|(i, row)| {
                         row.iter()
                             .enumerate()
                             .filter(|(_, w)| **w != 0.0)
                             .map(|(j, &w)| (i, j, w))
                             .collect::<Vec<_>>()
-                    };
-                    rows.iter().enumerate().flat_map(row).collect()
-                }
+                    })
+                    .collect(),
             },
             free,
         }
@@ -305,10 +306,14 @@ impl Problem {
         let (form, rows) = match &self.matrix {
             Matrix::Stiffness(rows) => ("Stiffness", lists(rows)),
             Matrix::Compliance(rows) => ("Compliance", lists(rows)),
-            Matrix::Entries(entries) => {
-                let entry = |(i, j, value)| format!("({i}, {j}, {value:?})");
-                ("Entries", entries.iter().copied().map(entry).collect())
-            }
+            Matrix::Entries(entries) => (
+                "Entries",
+                entries
+                    .iter()
+                    .copied()
+                    .map(|(i, j, value)| format!("({i}, {j}, {value:?})"))
+                    .collect(),
+            ),
         };
         text += &format!("    matrix: {form}([\n");
         for row in rows {

@@ -21,11 +21,11 @@ pub(super) fn check_ids(spec: &Spec) -> Result<(), Fault> {
         limits::node_id(&here, id)?;
         // The part before a dot could be a chain with this node.
         let mut dots = id.match_indices('.').map(|(at, _)| &id[..at]);
-        let is_chain = |chain: &&str| {
+        let chain = dots.find(|chain| {
             let named = spec.nodes.iter().find(|other| other.id() == *chain);
             named.is_some_and(|other| !matches!(other, Nodes::Node { .. }))
-        };
-        if let Some(chain) = dots.find(is_chain) {
+        });
+        if let Some(chain) = chain {
             bail!(
                 here,
                 "the id {id:?} would also be the name of a node of {chain:?}"

@@ -89,13 +89,15 @@ pub(super) fn check_doubled(
     nodes: &[Node],
     elements: &[Element],
 ) -> Result<(), Fault> {
-    let key = |(kind, nodes): &Element| {
-        let mut key = [usize::MAX; 4];
-        key[..corners(*kind)].copy_from_slice(&nodes[..corners(*kind)]);
-        key.sort_unstable();
-        key
-    };
-    let mut keys: Vec<[usize; 4]> = elements.iter().map(key).collect();
+    let mut keys: Vec<[usize; 4]> = elements
+        .iter()
+        .map(|(kind, nodes)| {
+            let mut key = [usize::MAX; 4];
+            key[..corners(*kind)].copy_from_slice(&nodes[..corners(*kind)]);
+            key.sort_unstable();
+            key
+        })
+        .collect();
     keys.sort_unstable();
     let Some(pair) = keys.windows(2).find(|pair| pair[0] == pair[1]) else {
         return Ok(());

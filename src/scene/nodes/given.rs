@@ -46,8 +46,12 @@ impl Names {
         let mut numbered = Vec::with_capacity(sides.len());
         for (k, set) in sides.iter().enumerate() {
             let path = here.then("sides").then(k).then("sides");
-            let side = |(j, side): (usize, &Vec<usize>)| mesh.numbers(|| path.then(j), side);
-            let all: Result<Vec<_>, _> = set.sides.iter().enumerate().map(side).collect();
+            let all: Result<Vec<_>, _> = set
+                .sides
+                .iter()
+                .enumerate()
+                .map(|(j, side)| mesh.numbers(|| path.then(j), side))
+                .collect();
             numbered.push((path.clone(), all?));
         }
         let named = numbered
@@ -163,14 +167,17 @@ struct Labels {
 impl Labels {
     /// Converts labels, located at `path`, to node numbers.
     fn numbers(&self, path: impl Fn() -> Path, labels: &[usize]) -> Result<Vec<usize>, Fault> {
-        let number = |(k, label): (usize, &usize)| match self.labels.binary_search(label) {
-            Ok(place) => Ok(self.first + place),
-            Err(_) => Err(fault!(
-                path().then(k),
-                "no node of the mesh has the label {label}"
-            )),
-        };
-        labels.iter().enumerate().map(number).collect()
+        labels
+            .iter()
+            .enumerate()
+            .map(|(k, label)| match self.labels.binary_search(label) {
+                Ok(place) => Ok(self.first + place),
+                Err(_) => Err(fault!(
+                    path().then(k),
+                    "no node of the mesh has the label {label}"
+                )),
+            })
+            .collect()
     }
 
     fn set(&self, here: &Path, set: &NodeSet) -> Result<Vec<usize>, Fault> {

@@ -152,9 +152,12 @@ impl Names {
     fn curve(&self, id: &str) -> Result<(Vec<Point>, usize), String> {
         let chain = self.chain(id)?;
         self.check_one_chain(id)?;
-        let place = |n: &usize| (self.nodes[*n].at[0], self.nodes[*n].at[1]);
         Ok((
-            chain.nodes.iter().map(place).collect(),
+            chain
+                .nodes
+                .iter()
+                .map(|n| (self.nodes[*n].at[0], self.nodes[*n].at[1]))
+                .collect(),
             chain.kind.per_element().unwrap_or(2),
         ))
     }

@@ -237,10 +237,12 @@ fn pieces(sides: &[Vec<usize>]) -> Vec<Vec<Vec<usize>>> {
         };
     // A walk continues only where exactly one side ends and one starts.
     let goes_on = |node: usize| one(&ending, node).and_then(|_| one(&starting, node));
-    let begins = |k: &usize| goes_on(ends(&sides[*k]).0).is_none();
     let mut taken = vec![false; sides.len()];
     let mut pieces = Vec::new();
-    for first in (0..sides.len()).filter(begins).chain(0..sides.len()) {
+    for first in (0..sides.len())
+        .filter(|k| goes_on(ends(&sides[*k]).0).is_none())
+        .chain(0..sides.len())
+    {
         let mut piece = Vec::new();
         let mut next = Some(first);
         while let Some(k) = next.filter(|&k| !taken[k]) {

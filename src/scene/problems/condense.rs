@@ -49,8 +49,10 @@ pub fn condensed(
     let columns = by_column(h);
     let mut x = vec![0.0; m.rows];
     let onto = |x: &[f64]| -> Vec<f64> {
-        let sum = |column: &Vec<(usize, f64)>| column.iter().map(|&(i, v)| v * x[i]).sum();
-        columns.iter().map(sum).collect()
+        columns
+            .iter()
+            .map(|column| column.iter().map(|&(i, v)| v * x[i]).sum())
+            .collect()
     };
     solver.solve(f, &mut x)?;
     let q = onto(&x);

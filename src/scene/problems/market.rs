@@ -37,8 +37,10 @@ struct MarketNames {
 impl MarketNames {
     fn from_file(file: &Path) -> Result<MarketNames, String> {
         let stem = file.file_stem().unwrap_or_default().to_string_lossy();
-        let wrong = |part: &&&str| stem.ends_with(&format!("_{part}"));
-        if let Some(part) = PARTS.iter().find(wrong) {
+        if let Some(part) = PARTS
+            .iter()
+            .find(|part| stem.ends_with(&format!("_{part}")))
+        {
             let matrix = stem.trim_end_matches(&format!("_{part}"));
             return Err(format!(
                 "this is {part} of a problem; name its matrix instead: {matrix}_W.mtx, a compliance, or {matrix}_K.mtx, a stiffness"

@@ -173,17 +173,16 @@ fn stroke(points: &[(f64, f64)], width: f64) -> Vec<Vec<(f64, f64)>> {
             (x0 - x, y0 - y),
         ]
     };
-    let disc = |(x, y): &(f64, f64)| {
-        (0..8)
-            .map(|k| f64::from(k) * std::f64::consts::FRAC_PI_4)
-            .map(|a| (x + half * a.cos(), y + half * a.sin()))
-            .collect()
-    };
     let bends = points
         .get(1..points.len().saturating_sub(1))
         .unwrap_or_default()
         .iter()
-        .map(disc);
+        .map(|(x, y)| {
+            (0..8)
+                .map(|k| f64::from(k) * std::f64::consts::FRAC_PI_4)
+                .map(|a| (x + half * a.cos(), y + half * a.sin()))
+                .collect()
+        });
     points.windows(2).map(piece).chain(bends).collect()
 }
 

@@ -122,7 +122,7 @@ fn question(app: &App, view: Option<&View>) -> Option<String> {
         }
         Overlay::Answer => Some(
             match app.learning.lesson.as_ref().and_then(Tutor::question) {
-                Some(question) if question.kind == AnswerKind::Choice => {
+                Some(question) if question.kind() == AnswerKind::Choice => {
                     format!("your answer:  1 to {}", question.options.len())
                 }
                 Some(_) => format!("your answer:  {MODES}"),

@@ -145,12 +145,15 @@ fn paragraph(part: &Paragraph, width: usize, theme: &Theme) -> paint::Lines {
 fn wrapped(mark: &str, text: &str, width: usize, style: Style) -> paint::Lines {
     let indent = mark.width();
     let lines = paint::wrap(text, width.saturating_sub(2 + indent));
-    let line = |(index, words): (usize, String)| {
-        let mark = if index == 0 { mark } else { "" };
-        Line::from(vec![
-            Span::styled(format!(" {}", shown::padded(mark, indent)), style),
-            Span::styled(words, style),
-        ])
-    };
-    lines.into_iter().enumerate().map(line).collect()
+    lines
+        .into_iter()
+        .enumerate()
+        .map(|(index, words)| {
+            let mark = if index == 0 { mark } else { "" };
+            Line::from(vec![
+                Span::styled(format!(" {}", shown::padded(mark, indent)), style),
+                Span::styled(words, style),
+            ])
+        })
+        .collect()
 }

@@ -21,7 +21,7 @@ use ratatui::text::{Line, Span};
 use ratatui::widgets::Widget;
 use std::f64::consts::FRAC_PI_4;
 use stickslip_core::fem::lagrange;
-use stickslip_core::model::{BodyKind, Contact};
+use stickslip_core::model::BodyKind;
 use stickslip_core::plane::distance;
 use stickslip_core::{Model, PointDeformation, SurfaceElement};
 use stickslip_debugger::Examination;
@@ -181,16 +181,15 @@ pub fn slave_at(area: Rect, app: &App, view: &View, at: Position) -> Option<usiz
         return None;
     }
     let (canvas, window) = field(inner, app, view);
-    let far = |(slave, contact): (usize, &Contact)| {
-        let (x, y) = canvas.cell(window.dot(window.place(view, contact.node)))?;
-        let far = u32::from(x.abs_diff(at.x)) + 2 * u32::from(y.abs_diff(at.y));
-        (far <= NEAR).then_some((far, slave))
-    };
     view.model
         .contacts
         .iter()
         .enumerate()
-        .filter_map(far)
+        .filter_map(|(slave, contact)| {
+            let (x, y) = canvas.cell(window.dot(window.place(view, contact.node)))?;
+            let far = u32::from(x.abs_diff(at.x)) + 2 * u32::from(y.abs_diff(at.y));
+            (far <= NEAR).then_some((far, slave))
+        })
         .min()
         .map(|(_, slave)| slave)
 }
@@ -199,8 +198,10 @@ pub fn slave_at(area: Rect, app: &App, view: &View, at: Position) -> Option<usiz
 fn draw_curve(canvas: &mut Canvas, window: &Window, nodes: &[Point], style: Style) {
     let dots = |points: &[Point]| -> Vec<Dot> { points.iter().map(|&p| window.dot(p)).collect() };
     let straight = dots(nodes);
-    let is_close = |ends: &[Dot]| distance(ends[0], ends[1]) < CLOSE;
-    if straight.windows(2).all(is_close) {
+    if straight
+        .windows(2)
+        .all(|ends| distance(ends[0], ends[1]) < CLOSE)
+    {
         canvas.polyline(&straight, style)
     } else {
         canvas.polyline(&dots(&curve(nodes)), style)
@@ -482,11 +483,14 @@ fn motions(canvas: &mut Canvas, window: &Window, app: &App, view: &View) -> Vec<
         return Vec::new();
     };
     let length = MOTION * window.extent;
-    let line = |&[at, along]: &[Point; 2]| {
-        let tip = [0, 1].map(|axis| at[axis] + length * along[axis]);
-        [window.dot(at), window.dot(tip)]
-    };
-    let lines: Vec<[Dot; 2]> = found.arrows.iter().map(line).collect();
+    let lines: Vec<[Dot; 2]> = found
+        .arrows
+        .iter()
+        .map(|&[at, along]| {
+            let tip = [0, 1].map(|axis| at[axis] + length * along[axis]);
+            [window.dot(at), window.dot(tip)]
+        })
+        .collect();
     for [from, to] in &lines {
         canvas.line(*from, *to, app.theme.strong);
     }
@@ -517,11 +521,12 @@ fn slaves(buffer: &mut Buffer, canvas: &Canvas, window: &Window, app: &App, view
     let theme = &app.theme;
     let selected = app.slave(view);
     let others = (0..view.model.contacts.len()).filter(|slave| *slave != selected);
-    let cell = |slave: usize| {
-        let node = view.model.contacts.get(slave)?.node;
-        canvas.cell(window.dot(window.place(view, node)))
-    };
-    let seen: Vec<(u16, u16)> = (0..view.model.contacts.len()).filter_map(cell).collect();
+    let seen: Vec<(u16, u16)> = (0..view.model.contacts.len())
+        .filter_map(|slave| {
+            let node = view.model.contacts.get(slave)?.node;
+            canvas.cell(window.dot(window.place(view, node)))
+        })
+        .collect();
     for slave in others.chain([selected]) {
         let Some(node) = view.model.contacts.get(slave).map(|slave| slave.node) else {
             return;
@@ -539,8 +544,13 @@ fn slaves(buffer: &mut Buffer, canvas: &Canvas, window: &Window, app: &App, view
         };
         paint::label(buffer, (x, y), theme::letter(mode), style, theme);
         let right = (x + 1, y);
-        let crowded = |&(a, b): &&(u16, u16)| a.abs_diff(x) < APART && b.abs_diff(y) < 2;
-        if app.camera.zoom > 1.0 && seen.iter().filter(crowded).count() == 1 {
+        if app.camera.zoom > 1.0
+            && seen
+                .iter()
+                .filter(|&(a, b)| a.abs_diff(x) < APART && b.abs_diff(y) < 2)
+                .count()
+                == 1
+        {
             name(buffer, canvas, (x, y), view.slave(slave), theme);
         }
         if found(view).is_some_and(|found| found.nodes.contains(&slave))

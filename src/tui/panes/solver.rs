@@ -183,11 +183,12 @@ fn printed(lines: Vec<stickslip_debugger::recorded::log::LogLine>, width: usize)
                 paint::wrap(&said.text, width.saturating_sub(2))
             }
         });
-    let row = |text| Row {
-        text,
-        style: |theme| theme.text,
-    };
-    wrapped.map(row).collect()
+    wrapped
+        .map(|text| Row {
+            text,
+            style: |theme| theme.text,
+        })
+        .collect()
 }
 
 /// The log, one line per row, the newest last.

@@ -141,8 +141,10 @@ fn position(app: &App, view: &View, width: usize) -> Line<'static> {
     if app.unkept {
         // Nothing is recorded any more, so this must stay visible.
         const LOST: [&str; 2] = ["   no journal (:journal FILE)", "  no journal"];
-        let fits = |words: &&&str| line.width() + words.width() <= width;
-        let words = LOST.iter().find(fits).unwrap_or(&LOST[1]);
+        let words = LOST
+            .iter()
+            .find(|words| line.width() + words.width() <= width)
+            .unwrap_or(&LOST[1]);
         end_with(&mut line, words, width, app);
     }
     line
@@ -267,8 +269,9 @@ fn outcome(app: &App, view: &View, width: u16) -> paint::Lines {
         wide if wide > room / 2 => (OUTCOME - 1, 0),
         wide => (OUTCOME, wide + 3),
     };
-    let is_long = |last: &String| last.width() + end > room;
-    if words.len() > most || words.len() == most && words.last().is_some_and(is_long) {
+    if words.len() > most
+        || words.len() == most && words.last().is_some_and(|last| last.width() + end > room)
+    {
         words.truncate(most);
         if let Some(last) = words.last_mut() {
             *last = paint::cut(&format!("{last} …"), room.saturating_sub(end).max(1));

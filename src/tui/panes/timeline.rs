@@ -10,6 +10,7 @@ use crate::layout::Pane;
 use crate::paint;
 use crate::pane_entry::{PaneEntry, frame};
 use crate::view::View;
+use PointKind::*;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Margin, Position, Rect};
 use ratatui::style::{Modifier, Style};
@@ -199,16 +200,16 @@ fn title(view: &View) -> String {
     };
     let at = strip.position;
     let what = match strip.kind {
-        PointKind::Start => "start".into(),
+        Start => "start".into(),
         _ if view.model.finished.is_some() => names::position_in(view.model, at),
-        PointKind::Intervention => "an intervention".into(),
+        Intervention => "an intervention".into(),
         kind => format!(
             "increment {}, major {}, minor {}{}",
             at.increment,
             at.major,
             at.minor,
             match kind {
-                PointKind::Jumped | PointKind::LastJumped => ", jumped",
+                Jumped | LastJumped => ", jumped",
                 _ => "",
             }
         ),
@@ -222,7 +223,7 @@ fn rule(view: &View, at: usize) -> Option<&'static str> {
     let before = view.strips.get(at.checked_sub(1)?)?;
     let (then, now) = (before.position, view.strips[at].position);
     let of = |at: stickslip_core::step::event::Position| (at.increment, at.attempt);
-    match before.kind == PointKind::Start {
+    match before.kind == Start {
         false if view.model.finished.is_some() => {
             if then.increment == now.increment {
                 (then.attempt != now.attempt).then_some("│")
@@ -260,7 +261,7 @@ fn headings(buffer: &mut Buffer, inner: Rect, shown: &[Column], view: &View, sty
 /// The letter of a node's mode in an iteration, V for a node fixed in a corner; lower case if it was forced.
 fn cell(strip: &Strip, slave: usize, finished: bool, app: &App) -> (&'static str, Style) {
     let (mode, forced) = (strip.before(slave), strip.is_forced(slave));
-    if strip.kind == PointKind::Intervention && !forced {
+    if strip.kind == Intervention && !forced {
         return ("·", app.theme.faint);
     }
     match strip.letter(slave) {
@@ -315,17 +316,17 @@ fn finished_cell(strip: &Strip, slave: usize, letter: u8, app: &App) -> (&'stati
 fn end(kind: PointKind, app: &App) -> (&'static str, Style) {
     let theme = &app.theme;
     match kind {
-        PointKind::Start => ("┊", theme.faint),
-        PointKind::Minor => (" ", theme.faint),
-        PointKind::Intervention => ("◇", theme.warning),
-        PointKind::Damped | PointKind::Cut => ("½", theme.warning),
-        PointKind::Climbed => ("⇑", theme.warning),
-        PointKind::Refused => ("⊘", theme.warning),
-        PointKind::Major => ("▸", theme.faint),
-        PointKind::Increment | PointKind::Last => ("✓", theme.good),
-        PointKind::Jumped | PointKind::LastJumped => ("↯", theme.warning),
-        PointKind::Cycle => ("↺", theme.bad),
-        PointKind::Failed => ("✗", theme.bad),
+        Start => ("┊", theme.faint),
+        Minor => (" ", theme.faint),
+        Intervention => ("◇", theme.warning),
+        Damped | Cut => ("½", theme.warning),
+        Climbed => ("⇑", theme.warning),
+        Refused => ("⊘", theme.warning),
+        Major => ("▸", theme.faint),
+        Increment | Last => ("✓", theme.good),
+        Jumped | LastJumped => ("↯", theme.warning),
+        Cycle => ("↺", theme.bad),
+        Failed => ("✗", theme.bad),
     }
 }
 

@@ -172,13 +172,17 @@ fn plot_runs(buffer: &mut Buffer, plot: Rect, page: &ChartPage, theme: &Theme) {
 
 /// The legend of the series.
 fn series(chart: &Precision, theme: &Theme, width: usize) -> paint::Lines {
-    let one = |(k, name): (usize, &String)| {
-        Line::from(vec![
-            Span::styled(format!(" {} ", letter(k, false)), theme.strong),
-            Span::styled(paint::cut(name, width.saturating_sub(3)), theme.text),
-        ])
-    };
-    let mut lines: Vec<Line> = chart.series.iter().enumerate().map(one).collect();
+    let mut lines: Vec<Line> = chart
+        .series
+        .iter()
+        .enumerate()
+        .map(|(k, name)| {
+            Line::from(vec![
+                Span::styled(format!(" {} ", letter(k, false)), theme.strong),
+                Span::styled(paint::cut(name, width.saturating_sub(3)), theme.text),
+            ])
+        })
+        .collect();
     lines.push(Line::default());
     for (mark, words) in [
         ("A", "capital: on the Pareto front"),

@@ -284,8 +284,11 @@ impl ProjectedStep {
         }
         let (step, slope) = (all.step, all.step_slope);
         let series = |of: &[f64; MAX_NODES], eta: f64| -> f64 {
-            let terms = of.iter().enumerate().take(degree);
-            terms.map(|(k, a)| a * legendre(k, eta)).sum()
+            of.iter()
+                .enumerate()
+                .take(degree)
+                .map(|(k, a)| a * legendre(k, eta))
+                .sum()
         };
         // The integration starts at the left end, where the integral is 1 + ξ.
         let line = |eta: f64| 1.0 + xi + integral(rule, -1.0, eta, &|x| series(&step, x));

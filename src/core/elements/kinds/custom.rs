@@ -67,15 +67,16 @@ impl CustomKind {
 /// each, from corner to corner; the nodes between the corners are numbered after the corners, face by face.
 fn are_around(faces: &[&[usize]], nodes: usize) -> bool {
     let (corners, per_face) = (faces.len(), faces.first().map_or(0, |face| face.len()));
-    let is_one = |(k, face): (usize, &&[usize])| {
-        let inner = corners + k * (per_face - 2)..corners + (k + 1) * (per_face - 2);
-        let around = [k].into_iter().chain(inner).chain([(k + 1) % corners]);
-        around.eq(face.iter().copied())
-    };
     (3..=4).contains(&corners)
         && (2..=MAX_NODES).contains(&per_face)
         && nodes >= corners * (per_face - 1)
-        && faces.iter().enumerate().all(is_one)
+        && faces.iter().enumerate().all(|(k, face)| {
+            let inner = corners + k * (per_face - 2)..corners + (k + 1) * (per_face - 2);
+            [k].into_iter()
+                .chain(inner)
+                .chain([(k + 1) % corners])
+                .eq(face.iter().copied())
+        })
 }
 
 impl PartialEq for CustomKind {

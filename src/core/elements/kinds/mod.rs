@@ -111,8 +111,7 @@ impl ElementKind {
 
     /// The one with this word.
     pub fn from_word(word: &str) -> Option<ElementKind> {
-        let mut own = Self::ALL.into_iter();
-        let own = own.find(|kind| kind.word() == word);
+        let own = Self::ALL.into_iter().find(|kind| kind.word() == word);
         own.or_else(|| CustomKind::named(word).map(ElementKind::Custom))
     }
 
@@ -154,15 +153,18 @@ impl ElementKind {
 
     /// The faces of an element with these nodes, as node numbers.
     pub fn faces_of(self, nodes: &[usize]) -> impl Iterator<Item = Vec<usize>> {
-        let faces = self.faces().iter();
-        faces.map(|face| face.iter().map(|&place| nodes[place]).collect())
+        self.faces()
+            .iter()
+            .map(|face| face.iter().map(|&place| nodes[place]).collect())
     }
 }
 
 impl Serialize for ElementKind {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let place = Self::ALL.iter().position(|kind| kind == self);
-        let place = place.unwrap_or(Self::ALL.len()) as u32;
+        let place = Self::ALL
+            .iter()
+            .position(|kind| kind == self)
+            .unwrap_or(Self::ALL.len()) as u32;
         serializer.serialize_unit_variant("ElementKind", place, self.word())
     }
 }

@@ -205,8 +205,9 @@ pub fn core(
 
 /// The nodes that can be written: those that face a surface and can move.
 pub fn writable(problem: &InterfaceProblem) -> Vec<usize> {
-    let can = |place: &usize| problem.nodes[*place].moves() != [false; 2];
-    (0..problem.nodes.len()).filter(can).collect()
+    (0..problem.nodes.len())
+        .filter(|place| problem.nodes[*place].moves() != [false; 2])
+        .collect()
 }
 
 /// The file of a whole frozen problem in its current state, without the nodes that cannot be written
@@ -321,8 +322,11 @@ fn text(
 /// # Errors If it cannot be written: the format supports only a compliance, and no cohesion.
 pub fn siconos(model: &Model, problem: &InterfaceProblem) -> Result<Friction2d, NoExport> {
     let TotalForceProblem { slaves, w, q } = total(model, problem)?;
-    let of = |slave: &usize| problem.nodes.iter().find(|node| node.slave == *slave);
-    let nodes = || slaves.iter().filter_map(of);
+    let nodes = || {
+        slaves
+            .iter()
+            .filter_map(|slave| problem.nodes.iter().find(|node| node.slave == *slave))
+    };
     if let Some(node) = nodes().find(|node| node.friction.cohesion != 0.0) {
         let name = names::slave(model, node.slave).to_owned();
         return Err(NoExport::Cohesive(name));
@@ -459,13 +463,17 @@ fn stiffness(problem: &InterfaceProblem) -> Option<Parts> {
         .iter()
         .flat_map(|node| node.prescribed)
         .map(|p| -p);
-    let load = |(place, node): (usize, &ProblemNode)| {
-        [
-            -c[2 * place] - node.state.f_n,
-            -c[2 * place + 1] - node.state.f_t,
-        ]
-    };
-    let loads = problem.nodes.iter().enumerate().map(load).collect();
+    let loads = problem
+        .nodes
+        .iter()
+        .enumerate()
+        .map(|(place, node)| {
+            [
+                -c[2 * place] - node.state.f_n,
+                -c[2 * place + 1] - node.state.f_t,
+            ]
+        })
+        .collect();
     Some((
         Matrix::Stiffness(rows(n, |i, j| -k_columns[j * n + i])),
         free.collect(),

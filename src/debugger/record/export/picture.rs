@@ -579,9 +579,8 @@ fn mode(shown: &ExportState, slave: usize) -> Mode {
 /// The largest displacement of a node.
 fn moved(shown: &ExportState) -> f64 {
     let model = &shown.scene.model;
-    let far = |node: usize| outline::displacement(model, &shown.state.u, node);
     let largest = (0..model.nodes.len())
-        .map(far)
+        .map(|node| outline::displacement(model, &shown.state.u, node))
         .filter(|d| d.is_finite())
         .fold(0.0, f64::max);
     let round_off = shown.event.map(|event| RoundOff::new(model, &event.before));

@@ -87,13 +87,15 @@ fn mean_distance(line: &Line, other: &Line) -> f64 {
             .collect()
     };
     let (own, others) = (few(&line.at, FEW), few(&other.at, 16 * FEW));
-    let nearest = |a: &[f64; 2]| {
-        others
-            .iter()
-            .map(|b| distance(*a, *b))
-            .fold(f64::INFINITY, f64::min)
-    };
-    own.iter().map(nearest).sum::<f64>() / own.len().max(1) as f64
+    own.iter()
+        .map(|a| {
+            others
+                .iter()
+                .map(|b| distance(*a, *b))
+                .fold(f64::INFINITY, f64::min)
+        })
+        .sum::<f64>()
+        / own.len().max(1) as f64
 }
 
 fn text(file: &str, parts: &[String], lines: &[Line], guess: &OutlineGuess) -> String {
@@ -190,14 +192,15 @@ fn text(file: &str, parts: &[String], lines: &[Line], guess: &OutlineGuess) -> S
 /// The id of a body: the name of its part, restricted to the characters of an id.
 fn body(parts: &[String], k: usize) -> String {
     let id = |part: &String| -> String {
-        let usable = |c: char| {
-            if c.is_alphanumeric() || c == '-' {
-                c
-            } else {
-                '_'
-            }
-        };
-        part.chars().map(usable).collect()
+        part.chars()
+            .map(|c| {
+                if c.is_alphanumeric() || c == '-' {
+                    c
+                } else {
+                    '_'
+                }
+            })
+            .collect()
     };
     let own = id(&parts[k]);
     match parts.iter().filter(|part| id(part) == own).count() {

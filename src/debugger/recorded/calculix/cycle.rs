@@ -47,8 +47,10 @@ pub fn first(run: &CalculixFiles, attempt: &Attempt) -> Option<Cycle> {
             next < attempt.iterations.len()
                 && differ(run, attempt, of(k), of(next), SAME) == Some(false)
         };
-        let closed = |k: usize| run.closed(of(k)).is_some_and(|closed| !closed.is_empty());
-        let is_cycle = turn.clone().all(again) && turn.clone().any(closed);
+        let is_cycle = turn.clone().all(again)
+            && turn
+                .clone()
+                .any(|k| run.closed(of(k)).is_some_and(|closed| !closed.is_empty()));
         is_cycle.then_some(turn)
     })?;
     let iterations = of(found.start)..of(found.end);

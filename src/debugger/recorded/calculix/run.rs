@@ -67,8 +67,11 @@ impl Switching {
 
     /// The first attempt with the most switches, and their number.
     pub fn most(&self) -> (usize, usize) {
-        let first = |a: &(usize, usize), b: &(usize, usize)| a.1.cmp(&b.1).then(b.0.cmp(&a.0));
-        let most = self.attempts.iter().copied().max_by(first);
+        let most = self
+            .attempts
+            .iter()
+            .copied()
+            .max_by(|a, b| a.1.cmp(&b.1).then(b.0.cmp(&a.0)));
         most.unwrap_or_default()
     }
 }
@@ -220,11 +223,12 @@ impl CalculixRun {
 
 /// All slaves that switch.
 fn switching(files: &CalculixFiles) -> Vec<Switching> {
-    let none = |slave| Switching {
-        slave,
-        attempts: Vec::new(),
-    };
-    let mut all: Vec<Switching> = (0..files.slaves.len()).map(none).collect();
+    let mut all: Vec<Switching> = (0..files.slaves.len())
+        .map(|slave| Switching {
+            slave,
+            attempts: Vec::new(),
+        })
+        .collect();
     for (index, attempt) in files.attempts.iter().enumerate() {
         for k in attempt.iterations.clone().skip(1) {
             let (Some(before), Some(now)) = (files.closed(k - 1), files.closed(k)) else {

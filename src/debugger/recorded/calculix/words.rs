@@ -116,8 +116,11 @@ pub fn attempt(run: &CalculixRun, attempt: usize) -> String {
 fn cycle(run: &CalculixRun, attempt: usize) -> Option<String> {
     let cycle = run.cycles[attempt].as_ref()?;
     let number = run.files.iterations[cycle.iterations.start].number;
-    let residual = |k| Some(shortest(run.norms(k)?.residual));
-    let residuals: Vec<String> = cycle.iterations.clone().filter_map(residual).collect();
+    let residuals: Vec<String> = cycle
+        .iterations
+        .clone()
+        .filter_map(|k| Some(shortest(run.norms(k)?.residual)))
+        .collect();
     let residuals = if residuals.is_empty() {
         String::new()
     } else {
@@ -166,15 +169,17 @@ pub fn contact(run: &CalculixRun, iteration: usize, slave: usize) -> String {
         None => "contact elements unknown".to_owned(),
         Some([]) => "open".to_owned(),
         Some(closed) => {
-            let face = |closed: &stickslip_exchange::calculix::cel::ClosedContact| {
-                let face = face(&run.files.masters[closed.master as usize]);
-                if points {
-                    format!("{face} at {}", counted(closed.elements as usize, "point"))
-                } else {
-                    face
-                }
-            };
-            let faces: Vec<String> = closed.iter().map(face).collect();
+            let faces: Vec<String> = closed
+                .iter()
+                .map(|closed| {
+                    let face = face(&run.files.masters[closed.master as usize]);
+                    if points {
+                        format!("{face} at {}", counted(closed.elements as usize, "point"))
+                    } else {
+                        face
+                    }
+                })
+                .collect();
             format!("closed on {}", faces.join("; "))
         }
     };

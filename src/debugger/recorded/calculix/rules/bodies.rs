@@ -99,8 +99,7 @@ pub fn reduced_row(shape: &DeckShape) -> Vec<RunFinding> {
             _ => return None,
         };
         let outer = |element: usize| shape.outer_faces(element).count();
-        let is_row = |k: usize| deck.elements[k].kind.reduced && outer(k) >= ROW;
-        (pairs.next().is_some() && shape.elements(body).all(is_row)).then(|| RunFinding {
+        (pairs.next().is_some() && shape.elements(body).all(|k| deck.elements[k].kind.reduced && outer(k) >= ROW)).then(|| RunFinding {
             rule: "reduced integration",
             cause: format!(
                 "{} is a single row of {reduced} elements, which have motions without stiffness (hourglass modes) that contact \

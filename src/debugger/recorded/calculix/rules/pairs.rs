@@ -47,8 +47,10 @@ pub fn reversed_faces(shape: &DeckShape) -> Vec<RunFinding> {
             (own, SortedPoints::new(points))
         });
         for (which, (own, other)) in both.iter().enumerate() {
-            let wrong = |face: &&SurfaceFace| shape.is_inner(face) || looks_away(face, other);
-            let bad: Vec<&SurfaceFace> = own.iter().filter(wrong).collect();
+            let bad: Vec<&SurfaceFace> = own
+                .iter()
+                .filter(|face| shape.is_inner(face) || looks_away(face, other))
+                .collect();
             if 2 * bad.len() > own.len() {
                 found.extend(reversed(shape, pair, which, &bad, other));
             }
@@ -72,8 +74,12 @@ fn looks_aside(shape: &DeckShape, pair: &PairShape) -> bool {
         let (nearest, ..) = shape.nearest(face.centre, pair)?;
         Some(face.normal.dot(&pair.masters[nearest].normal))
     };
-    let aside = |face| nearest(face).is_none_or(|cosine| cosine > ASIDE);
-    !pair.slaves.is_empty() && !pair.masters.is_empty() && pair.slaves.iter().all(aside)
+    !pair.slaves.is_empty()
+        && !pair.masters.is_empty()
+        && pair
+            .slaves
+            .iter()
+            .all(|face| nearest(face).is_none_or(|cosine| cosine > ASIDE))
 }
 
 /// Whether a face looks away from the nearest of some points.

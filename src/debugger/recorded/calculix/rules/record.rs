@@ -8,7 +8,7 @@ use super::supports::open_at_start;
 use std::collections::BTreeSet;
 use stickslip_core::RunFinding;
 use stickslip_exchange::calculix::cvg::Norms;
-use stickslip_exchange::calculix::files::{End, Iteration};
+use stickslip_exchange::calculix::files::End;
 use stickslip_scene::number::{shortest, sig4};
 use stickslip_scene::shown::first_of;
 
@@ -54,8 +54,12 @@ pub fn increments_used(run: &CalculixRun, shape: Option<&DeckShape>) -> Vec<RunF
 pub fn never_closed(run: &CalculixRun, shape: Option<&DeckShape>) -> Vec<RunFinding> {
     let files = &run.files;
     let is_open = |norms: &Norms| norms.elements == 0;
-    let norms = |at: &Iteration| at.norms.as_ref().is_some_and(is_open);
-    if files.iterations.is_empty() || !files.iterations.iter().all(norms) {
+    if files.iterations.is_empty()
+        || !files
+            .iterations
+            .iter()
+            .all(|at| at.norms.as_ref().is_some_and(is_open))
+    {
         return Vec::new();
     }
     let known = shape.map(open_at_start).unwrap_or_default();
@@ -206,8 +210,13 @@ fn pair_of<'s>(
         .nodes
         .iter()
         .position(|node| node.label == u64::from(label))?;
-    let has = |pair: &&PairShape| pair.nodes.iter().any(|own| own.node == node);
-    Some((node, shape.pairs.iter().find(has)?))
+    Some((
+        node,
+        shape
+            .pairs
+            .iter()
+            .find(|pair| pair.nodes.iter().any(|own| own.node == node))?,
+    ))
 }
 
 /// Where a slave is: its coordinates and its surface.

@@ -33,9 +33,12 @@ struct Resting<'s> {
 /// The slave nodes in front of the master, if it is flat there and the pair can open.
 fn flat<'s>(shape: &DeckShape, pair: &'s PairShape) -> Option<Vec<&'s SlaveGap>> {
     let normal = pair.normal();
-    let is_flat = |node: &&SlaveGap| pair.masters[node.face].normal.dot(&normal) > FLAT;
     let touching: Vec<&SlaveGap> = pair.in_front().collect();
-    let rests = !touching.is_empty() && touching.iter().all(is_flat) && !shape.is_tied(pair);
+    let rests = !touching.is_empty()
+        && touching
+            .iter()
+            .all(|node| pair.masters[node.face].normal.dot(&normal) > FLAT)
+        && !shape.is_tied(pair);
     rests.then_some(touching)
 }
 

@@ -61,8 +61,9 @@ fn relative(shape: &DeckShape, step: usize, pair: &PairShape, times: [f64; 2]) -
 
 /// The steps that may be the cause, with their numbers and each pair.
 fn moves<'s>(shape: &'s DeckShape) -> impl Iterator<Item = (usize, &'s Step, &'s PairShape)> {
-    let pairs = |(k, step)| shape.pairs.iter().map(move |pair| (k, step, pair));
-    shape.suspects().flat_map(pairs)
+    shape
+        .suspects()
+        .flat_map(|(k, step)| shape.pairs.iter().map(move |pair| (k, step, pair)))
 }
 
 /// First increments that move a contact by much of an element.

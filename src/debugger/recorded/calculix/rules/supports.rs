@@ -94,8 +94,9 @@ pub fn open_at_start(shape: &DeckShape) -> Vec<RunFinding> {
 pub fn free_to_slide(shape: &DeckShape) -> Vec<RunFinding> {
     first_of_suspects(shape, |step| {
         free_groups(shape, step, |shape, group, motion, free| {
-            let slides = |pair: &&PairShape| touches(pair, step) && !sticks(shape, pair);
-            let pair = shape.pairs_of(group).find(slides)?;
+            let pair = shape
+                .pairs_of(group)
+                .find(|pair| touches(pair, step) && !sticks(shape, pair))?;
             if !motion.is_loaded(free) {
                 return None;
             }
@@ -223,11 +224,10 @@ fn touching(pair: &PairShape, step: usize) -> impl Iterator<Item = &SlaveGap> {
 
 /// Supports that stop free motions, on the loaded nodes, or else on the nodes that displacements drive, or all of the group.
 fn holding(shape: &DeckShape, motion: &GroupMotion, free: &[Motion]) -> String {
-    let own = |node: &usize| shape.group(*node) == Some(motion.group);
     let driven = shape
         .all_supports()
         .map(|value| value.node)
-        .filter(own)
+        .filter(|node| shape.group(*node) == Some(motion.group))
         .collect();
     let all = shape.group_nodes(motion.group).collect();
     let sets: [BTreeSet<usize>; 3] = [motion.loaded(), driven, all];
