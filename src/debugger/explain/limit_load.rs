@@ -125,9 +125,13 @@ fn largest_load(
         if jumped || reaches || steps > MOST_STEPS || onwards == Some(false) {
             return ControlFlow::Break(false);
         }
-        // An increment along the tangent, along which the load rises, has passed the maximum if it ends below its start.
         if (best - load) * ahead > FALL * largest {
-            return ControlFlow::Break(true);
+            // An increment along the tangent, along which the load rises, has passed the maximum if it ends below its start: in the
+            // same modes. In others the path may lead back.
+            let modes = now.nodes.iter().map(|node| node.mode);
+            let start = state.start.nodes.iter().map(|node| node.mode);
+            let has_risen = best != state.start.load_factor;
+            return ControlFlow::Break(has_risen || modes.eq(start));
         }
         if (load - best) * ahead > 0.0 {
             best = load;
