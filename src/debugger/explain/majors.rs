@@ -125,7 +125,9 @@ pub fn cycle_words(model: &Model, attempt: &Attempt, round: &MajorCycle) -> Vec<
                     let surface = model.surfaces.get(surface);
                     surface.is_some_and(|surface| !surface.smooth.is_empty())
                 };
-                let meet = kink.map_or(String::new(), |kink| format!(", {}", kink.words()));
+                let meet = kink
+                    .map(|kink| format!(", {}", kink.words()))
+                    .unwrap_or_default();
                 lines.push(Fact::why(format!(
                     "{name}, now at {here}, alternates between {one} and {other}{meet}; {moves}"
                 )));
