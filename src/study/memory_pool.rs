@@ -52,7 +52,9 @@ impl MemoryPool {
     /// Waits until a run of a model fits.
     pub fn take(&self, model: &Model) -> MemoryShare<'_> {
         let layout = [model.dofs.len(), model.contacts.len(), model.bodies.len()];
-        let bytes = self.taken().known.get(&layout).copied().unwrap_or_else(|| {
+        // The lock must be free again where the next lines take it.
+        let known = self.taken().known.get(&layout).copied();
+        let bytes = known.unwrap_or_else(|| {
             let bytes = Estimate::from_model(model)
                 .with(model.settings.solver)
                 .0

@@ -150,7 +150,7 @@ fn show(name: &str, scene: &Scene) {
 
 /// Checks the diagnosis pages of the scenes that fail.
 fn pages(asked: &Asked) -> ExitCode {
-    let (mut failed, mut faulty, mut ended) = (0, 0, 0);
+    let (mut failed, mut faulty, mut ended, mut solved) = (0, 0, 0, 0);
     for number in asked.from..asked.from + asked.count.unwrap_or(SCENES) {
         let Ok((_, scene)) = tally::scene(asked.seed, number, &asked.set) else {
             continue;
@@ -161,11 +161,15 @@ fn pages(asked: &Asked) -> ExitCode {
         failed += 1;
         faulty += usize::from(!page.faults.is_empty());
         ended += usize::from(page.ends);
+        solved += usize::from(!page.ends && page.works.is_some());
         println!("{number}: {}", page.cause);
+        if let Some(works) = &page.works {
+            println!("  try: {works}");
+        }
         page.faults.iter().for_each(|fault| println!("  {fault}"));
     }
     println!(
-        "{failed} scenes fail; the pages of {ended} show a limit load or that no modes are consistent, and {faulty} pages have faults"
+        "{failed} scenes fail; the pages of {ended} show a limit load or that no modes are consistent, those of {solved} others what was tried and passes, and {faulty} pages have faults"
     );
     ExitCode::from(u8::from(faulty > 0))
 }

@@ -16,6 +16,9 @@ const MOST: usize = 60_000;
 /// Causes that no other iteration can remove: the path ends, or no modes are consistent.
 const ENDS: [&str; 2] = ["limit load: ", "so no iteration can find any"];
 
+/// A state exists, but not for the scene's strategy.
+const EXISTS: &str = "a state exists at this load";
+
 /// The page of a failure, checked.
 pub struct CheckedPage {
     pub faults: Vec<String>,
@@ -23,6 +26,8 @@ pub struct CheckedPage {
     pub cause: String,
     /// Whether there is one of [`ENDS`].
     pub ends: bool,
+    /// What Try shows to work, if anything does.
+    pub works: Option<String>,
 }
 
 /// The page of a scene's failure. `None` if the scene does not fail.
@@ -51,14 +56,18 @@ pub fn check(scene: &Scene) -> Option<CheckedPage> {
             faults: vec!["no page".into()],
             cause: String::new(),
             ends: false,
+            works: None,
         });
     };
     let shows = |why: &&String| ENDS.iter().any(|words| why.contains(words));
     let end = page.why.iter().find(shows);
+    let exists = || page.why.iter().find(|why| why.contains(EXISTS)).cloned();
+    let works = page.works().map(|line| line.words()).or_else(exists);
     Some(CheckedPage {
         faults: faults(&page),
         cause: end.or(page.why.first()).cloned().unwrap_or_default(),
         ends: end.is_some(),
+        works,
     })
 }
 

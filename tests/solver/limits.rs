@@ -245,15 +245,20 @@ fn the_largest_load_on_the_path_is_named_where_the_search_ends() {
     assert!((load - highest).abs() < 1e-5, "{load} {highest}");
 }
 
-/// The path may also end where contacts change, or in an element that turns inside out: the load lies between the last increment and
+/// The path may also end where contacts change, or where a node gets behind its surface around the end, or in an element that turns inside out: the load lies between the last increment and
 /// the one that failed.
 #[test]
 fn the_end_of_the_path_is_named_where_contacts_change_or_an_element_is_inverted() {
     for (file, up_to, beyond) in [
         (
-            "tests/findings/path-ends-where-a-node-touches.ron",
+            "tests/findings/path-ends-behind-the-end-of-a-surface.ron",
+            "beyond load ",
+            "q.3 gets behind surface f around its end at (1.045, 0.6585), by 0.1658 ",
+        ),
+        (
+            "tests/findings/path-ends-where-modes-change.ron",
             "the equilibrium path ends at load ",
-            "where modes change (q.3 free → fixed); no state was found beyond it",
+            "where modes change (q.2 fixed → free, q.3 sliding → free); no state was found beyond it",
         ),
         (
             "tests/findings/path-ends-in-an-inverted-element.ron",

@@ -1,6 +1,8 @@
 //! The limit load: where a body becomes loose, and why (friction is used up, or no contact presses against the motion any more),
 //! or where the equilibrium path has its largest load.
 //!
+//! **End of a surface.** A node gets behind its surface around an end of it ([`super::surface_end`]).
+//!
 //! **Largest load.** From the last equilibrium, follows the path by arc length until the load falls, the path ends at a change of
 //! contacts, or every further step inverts an element.
 //!
@@ -13,16 +15,18 @@
 
 use super::load_limit_probe::{LoadLimitProbe, reach};
 use super::rigid_motion::BodyMotion;
+use super::surface_end::passed_end;
 use super::{names, strain};
 use std::collections::HashSet;
 use std::ops::ControlFlow;
 use std::sync::Arc;
-use stickslip_core::model::Body;
+use stickslip_core::model::{Body, BodyKind, SearchMode};
 use stickslip_core::plane::max_abs;
 use stickslip_core::step::arc_state::Change;
+use stickslip_core::words::counted;
 use stickslip_core::{
-    ContactRecord, Failure, Mode, Model, Outcome, PointDeformation, RigidMotion, RunEnd, Singular,
-    State, Stepper, Until,
+    ContactRecord, Failure, Intervention, Mode, Model, Outcome, PointDeformation, RigidMotion,
+    RunEnd, Settings, Singular, State, Stepper, Strategy, Until, strategy,
 };
 use stickslip_scene::number::{sig4, sig6};
 use stickslip_scene::shown::first_of;
@@ -44,6 +48,8 @@ struct PathPoint {
     u: Arc<Vec<f64>>,
     /// Direction of the path there.
     direction: Arc<Vec<f64>>,
+    /// Modes of the contacts.
+    modes: Vec<Mode>,
 }
 
 impl PathPoint {
@@ -53,7 +59,17 @@ impl PathPoint {
         let along = self.direction.iter().zip(moved);
         along.map(|(c, moved)| c * moved).sum::<f64>() > 0.0
     }
+
+    /// Whether a contact that slid sticks now. Behind a corner the path may turn by more than a right angle; on the way back, contacts
+    /// that slid stick.
+    fn sticks(&self, now: &State) -> bool {
+        let mut both = self.modes.iter().zip(&now.nodes);
+        both.any(|(before, now)| (*before, now.mode) == (Mode::Sliding, Mode::Fixed))
+    }
 }
+
+/// Maximum number of minor iterations to the failure of the ladder.
+const MOST_OF_LADDER: u64 = 8000;
 
 /// How the load on a path stops rising.
 enum PathEnd {
@@ -78,25 +94,36 @@ fn largest_load(
     let largest = max_abs(&model.path);
     let (mut best, mut steps) = (state.start.load_factor, 0);
     let mut last: Option<PathPoint> = None;
+    let mut behind_corner = false;
     stepper.restore(&along);
     let until = Until::end().minors(MOST_MINORS).interrupted_by(stop);
     let end = stepper.drive(until, |stepper| {
-        let Outcome::Increment { jumped, .. } = stepper.event().outcome else {
-            return ControlFlow::Continue(());
+        let jumped = match stepper.event().outcome {
+            Outcome::Increment { jumped, .. } => jumped,
+            Outcome::PathCorner { .. } | Outcome::Cut { .. } => {
+                behind_corner = matches!(stepper.event().outcome, Outcome::PathCorner { .. });
+                return ControlFlow::Continue(());
+            }
+            _ => return ControlFlow::Continue(()),
         };
+        let turned = std::mem::take(&mut behind_corner);
         let now = stepper.state();
         let (load, u) = (now.start.load_factor, now.start.u.clone());
-        let onwards = last.take().map(|last| last.is_before(&u));
+        let onwards = last
+            .take()
+            .map(|last| last.is_before(&u) || turned && !last.sticks(now));
         last = now.way.as_ref().map(|way| PathPoint {
             u,
             direction: way.last.clone(),
+            modes: now.nodes.iter().map(|node| node.mode).collect(),
         });
         steps += 1;
         let reaches = (load - state.load_factor) * ahead > 0.0;
         if jumped || reaches || steps > MOST_STEPS || onwards == Some(false) {
             return ControlFlow::Break(false);
         }
-        if (best - load) * ahead > FALL * largest && onwards == Some(true) {
+        // An increment along the tangent, along which the load rises, has passed the maximum if it ends below its start.
+        if (best - load) * ahead > FALL * largest {
             return ControlFlow::Break(true);
         }
         if (load - best) * ahead > 0.0 {
@@ -147,9 +174,73 @@ struct Resistance {
     opening: [f64; 2],
 }
 
-/// Describes the limit load. `None` if none is found, for increments that were not cut and bodies that were loose from the start,
-/// and if interrupted. The stepper's final state is unspecified.
+/// Repeats an increment whose strategy does not cut it with the ladder, without its search: the state and failure in which the ladder
+/// ends, or the minor iterations in which it reaches the load. `None` if it does neither within the limit.
+fn with_ladder(
+    stepper: &mut Stepper,
+    state: &State,
+    stop: &dyn Fn() -> bool,
+) -> Option<Result<u64, (State, Failure)>> {
+    let settings = Settings {
+        strategy: Strategy::Ladder,
+        search: SearchMode::Off,
+        ..state.controls.settings
+    };
+    stepper.restore(&state.attempt_again());
+    stepper.intervene(&Intervention::Settings(settings)).ok()?;
+    let (wanted, leg) = (state.load_factor, state.start.leg);
+    let mut minors = 0_u64;
+    let until = Until::end().minors(MOST_OF_LADDER).interrupted_by(stop);
+    let end = stepper.drive(until, |stepper| {
+        minors += 1;
+        let start = &stepper.state().start;
+        let reached = start.load_factor == wanted || start.leg > leg;
+        match stepper.event().outcome {
+            Outcome::Increment { .. } if reached => ControlFlow::Break(()),
+            _ => ControlFlow::Continue(()),
+        }
+    });
+    match end {
+        RunEnd::Failed(failure) => Some(Err((stepper.state().clone(), failure))),
+        RunEnd::Stopped(()) | RunEnd::Finished => Some(Ok(minors)),
+        RunEnd::Spent | RunEnd::Interrupted => None,
+    }
+}
+
+/// Why a load is not reached.
+pub enum LoadEnd {
+    /// Equilibrium ends before it.
+    Limit(String),
+    /// The strategy does not find the state that another one finds.
+    Strategy(String),
+}
+
+/// Describes the limit load. `None` if none is found, for bodies that were loose from the start, and if interrupted. A mesh whose
+/// strategy does not cut increments is examined where the ladder fails, if it does. The stepper's final state is unspecified.
 pub fn limit_load(
+    stepper: &mut Stepper,
+    state: &State,
+    failure: &Failure,
+    stop: &dyn Fn() -> bool,
+) -> Option<LoadEnd> {
+    let is_mesh = |body: &Body| !matches!(body.kind, BodyKind::Linear(_));
+    let named = strategy::rungs(state.controls.settings.strategy).is_empty();
+    if !named || state.way.is_some() || !stepper.model().bodies.iter().any(is_mesh) {
+        return of_cut_increment(stepper, state, failure, stop).map(LoadEnd::Limit);
+    }
+    match with_ladder(stepper, state, stop)? {
+        Ok(minors) => Some(LoadEnd::Strategy(format!(
+            "the failure is that of the strategy: a state exists at this load, and the ladder reaches it (settings.strategy=ladder, tried: {})",
+            counted(minors, "minor")
+        ))),
+        Err((state, failure)) => {
+            of_cut_increment(stepper, &state, &failure, stop).map(LoadEnd::Limit)
+        }
+    }
+}
+
+/// The limit load of an increment that was cut as far as the settings allow.
+fn of_cut_increment(
     stepper: &mut Stepper,
     state: &State,
     failure: &Failure,
@@ -162,8 +253,10 @@ pub fn limit_load(
         if state.sub_increment.cut == 0 {
             return None;
         }
-        let found = largest_load(stepper, state, stop)?;
-        return Some(words(&found, stepper.model()));
+        return passed_end(stepper, state, stop).or_else(|| {
+            let found = largest_load(stepper, state, stop)?;
+            Some(words(&found, stepper.model()))
+        });
     };
     let found = reach(stepper, state, stop)?;
     let LoadLimitProbe { load, from, .. } = found;

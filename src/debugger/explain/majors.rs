@@ -79,7 +79,7 @@ impl Kink {
 }
 
 /// dx/dξ of an element at ξ.
-fn slope(element: SurfaceElement<'_>, places: &[[f64; 2]], xi: f64) -> [f64; 2] {
+pub(super) fn slope(element: SurfaceElement<'_>, places: &[[f64; 2]], xi: f64) -> [f64; 2] {
     let shape = element.shape(xi);
     let mut slope = [0.0; 2];
     for (&node, d) in element.nodes.iter().zip(shape.d) {

@@ -11,7 +11,7 @@
 //!   remedies.
 //! - [`attempt`]: repeats the failed attempt; [`majors`]: why its major iterations do not converge; [`rigid_motion`]:
 //!   unrestrained bodies; [`strain`]: solids outside the range of their law; [`load_limit_probe`]: the load that smaller
-//!   steps reach; [`mesh_probe`]: a trial on a finer mesh; [`restart`]: trials of a changed scene.
+//!   steps reach; [`surface_end`]: nodes behind the end of their surface; [`mesh_probe`]: a trial on a finer mesh; [`restart`]: trials of a changed scene.
 //! - [`touch`]: how far the forces depend on where nodes in new contact are held.
 //! - [`examination`]: the frozen problem of a state; [`page`]: the whole diagnosis, as the debugger shows it; [`headline`]: what
 //!   happened in one line; [`facts`]: the parts of the page; [`try_list`]: what can be done, with the outcome of each trial.
@@ -58,6 +58,7 @@ pub mod rigid_motion;
 pub mod round_off;
 pub mod step_size_probe;
 pub mod strain;
+pub mod surface_end;
 pub mod tested;
 pub mod touch;
 pub mod trail;

@@ -14,7 +14,7 @@ use super::headline::{at, headline};
 use super::indefinite::{self, indefinite};
 use super::judged;
 use super::jumped::leads_away;
-use super::limit_load::limit_load;
+use super::limit_load::{LoadEnd, limit_load};
 use super::load_limit_probe::reach;
 use super::majors;
 use super::mesh_probe::{MeshProbe, finer};
@@ -512,8 +512,14 @@ impl PageBuilder {
         failure: &Failure,
         stop: &dyn Fn() -> bool,
     ) {
-        let Some(text) = limit_load(stepper, state, failure, stop) else {
-            return;
+        let text = match limit_load(stepper, state, failure, stop) {
+            Some(LoadEnd::Limit(text)) => text,
+            // Try shows it already if it was tried there.
+            Some(LoadEnd::Strategy(text)) if !self.trials.iter().any(helps) => {
+                self.facts.insert(0, Fact::why(text));
+                return;
+            }
+            _ => return,
         };
         // A body that is held up to a load is not simply loose.
         if matches!(failure, Failure::Singular(Singular::Rigid { .. })) {

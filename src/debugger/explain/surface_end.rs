@@ -1,0 +1,151 @@
+//! A node that gets behind its surface around one of the surface's ends: contact acts only alongside a surface, so the node is
+//! inside as soon as it is over the surface again, however small the increment.
+//!
+//! The last equilibrium shows which free nodes are past an end and behind it. The increment is then repeated with such a node held
+//! free: if it passes, and the node is over the surface, only that node's penetration ends the path.
+
+use super::majors::slope;
+use super::names;
+use std::ops::ControlFlow;
+use stickslip_core::model::SearchMode;
+use stickslip_core::plane::{cross, dot, minus, unit};
+use stickslip_core::{
+    Intervention, Mode, Model, Outcome, RunEnd, Settings, State, Stepper, SurfaceElement, Until,
+};
+use stickslip_scene::number::{sig4, sig6};
+
+/// Maximum distance past the end in the last equilibrium, and minimum depth behind it, relative to the scene's length.
+const NEAR: f64 = 0.02;
+const DEEP: f64 = 1e-4;
+/// Maximum number of nodes tried, and of minor iterations of each trial.
+const MOST_NODES: usize = 4;
+const MOST_MINORS: u64 = 400;
+
+/// A node past the end of a surface, and behind it.
+struct PassedEnd {
+    slave: usize,
+    surface: usize,
+    /// Position of the end.
+    at: [f64; 2],
+    /// Distance past the end along the surface, and behind it (length).
+    past: f64,
+    depth: f64,
+}
+
+/// Describes the node whose way around the end of its surface ends the path. `None` if there is none, or if interrupted. The
+/// stepper's final state is unspecified.
+pub fn passed_end(stepper: &mut Stepper, state: &State, stop: &dyn Fn() -> bool) -> Option<String> {
+    let model = stepper.model().clone();
+    let mut all = behind(&model, state);
+    all.sort_by(|a, b| a.past.total_cmp(&b.past));
+    let near = all.into_iter().take(MOST_NODES);
+    let enters = |found: &PassedEnd| enters(stepper, state, found, stop);
+    let PassedEnd {
+        slave,
+        surface,
+        at: [x, y],
+        depth,
+        ..
+    } = near.into_iter().find(enters)?;
+    let (name, on) = (names::slave(&model, slave), &model.surfaces[surface].name);
+    let [x, y, depth] = [x, y, depth].map(sig4);
+    Some(format!(
+        "limit load: beyond load {}, {name} gets behind surface {on} around its end at ({x}, {y}), by {depth} (held free, it is inside the body when forces balance): extend the surface around this end",
+        sig6(state.start.load_factor)
+    ))
+}
+
+/// The free nodes past an end and behind it in the last equilibrium.
+fn behind(model: &Model, state: &State) -> Vec<PassedEnd> {
+    let places = model.places(&state.start.u);
+    let mut found = Vec::new();
+    for (slave, (contact, node)) in model.contacts.iter().zip(&state.start.nodes).enumerate() {
+        if node.mode != Mode::Free || node.spot.is_some() {
+            continue;
+        }
+        for &surface in &contact.surfaces {
+            for end in ends(model, surface, &places).into_iter().flatten() {
+                let to = minus(places[contact.node], places[end.node]);
+                // The outward normal is on the right of the walk.
+                let (past, depth) = (end.sign * dot(end.walk, to), cross(end.walk, to));
+                if (0.0..NEAR * model.length).contains(&past) && depth > DEEP * model.length {
+                    found.push(PassedEnd {
+                        slave,
+                        surface,
+                        at: places[end.node],
+                        past,
+                        depth,
+                    });
+                }
+            }
+        }
+    }
+    found
+}
+
+/// An end of a surface.
+struct SurfaceEnd {
+    node: usize,
+    /// Direction of the walk along the surface there (unit).
+    walk: [f64; 2],
+    /// Whether the walk ends there: 1, otherwise −1.
+    sign: f64,
+}
+
+/// The ends of a surface; none of a closed or endless one.
+fn ends(model: &Model, surface: usize, places: &[[f64; 2]]) -> Option<[SurfaceEnd; 2]> {
+    let chain = &model.surfaces[surface];
+    let last = chain.elements.len().checked_sub(1)?;
+    let [one, other] = [0, last].map(|element| SurfaceElement::from_surface(chain, element));
+    let (start, end) = (*one.first()?, *other.last()?);
+    let walk = [slope(one, places, -1.0), slope(other, places, 1.0)];
+    let [first, second] = [unit(walk[0])?, unit(walk[1])?];
+    let end_at = |node, walk, sign| SurfaceEnd { node, walk, sign };
+    (start != end && !chain.endless).then(|| [end_at(start, first, -1.0), end_at(end, second, 1.0)])
+}
+
+/// Whether the increment, with the node held free, comes to a balance of forces in which the node is behind the surface.
+fn enters(
+    stepper: &mut Stepper,
+    state: &State,
+    found: &PassedEnd,
+    stop: &dyn Fn() -> bool,
+) -> bool {
+    let (slave, mode) = (found.slave, Mode::Free);
+    let settings = Settings {
+        search: SearchMode::Off,
+        ..state.controls.settings
+    };
+    let held = Intervention::Force {
+        slave,
+        mode,
+        hold: true,
+    };
+    stepper.restore(&state.attempt_again());
+    let changes = [Intervention::Settings(settings), held];
+    if changes
+        .iter()
+        .any(|change| stepper.intervene(change).is_err())
+    {
+        return false;
+    }
+    let until = Until::end().minors(MOST_MINORS).interrupted_by(stop);
+    let end = stepper.drive(until, |stepper| {
+        if let Outcome::Increment { jumped: true, .. } = stepper.event().outcome {
+            return ControlFlow::Break(false);
+        }
+        let balanced = match &stepper.event().outcome {
+            Outcome::Major { after, .. } | Outcome::Increment { after, .. } => {
+                after.relative <= after.limit
+            }
+            _ => false,
+        };
+        let spot = stepper.state().nodes[slave].spot;
+        let over = spot.is_some_and(|spot| spot.surface == found.surface);
+        match balanced && over {
+            true => ControlFlow::Break(true),
+            false => ControlFlow::Continue(()),
+        }
+    });
+    end == RunEnd::Stopped(true)
+}
