@@ -114,8 +114,14 @@ impl Stepper {
         if jumps == Jumps::Dynamic && smallest && trip.follows() {
             return None;
         }
-        let round = |route: FallbackState| !matches!(route.by, Fallback::Held | Fallback::Back);
-        if jumps != Jumps::Accept && self.now.state.recovery.fallback.is_some_and(round) {
+        if jumps != Jumps::Accept
+            && self
+                .now
+                .state
+                .recovery
+                .fallback
+                .is_some_and(|route| !matches!(route.by, Fallback::Held | Fallback::Back))
+        {
             self.now.state.next_major();
             return Some(self.fail(why.clone()));
         }

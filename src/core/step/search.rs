@@ -173,9 +173,13 @@ impl Stepper {
             }
         }
         if let Some((place, tested)) = proposal.bound {
-            let contacts = model.contacts.iter().enumerate();
-            let mut chosen = contacts.filter(|(_, slave)| !slave.bond.is_tied());
-            let contact = chosen.nth(place).map_or(place, |(contact, _)| contact);
+            let contact = model
+                .contacts
+                .iter()
+                .enumerate()
+                .filter(|(_, slave)| !slave.bond.is_tied())
+                .nth(place)
+                .map_or(place, |(contact, _)| contact);
             self.event.nodes[contact].decision.tests[1] = Some(Test {
                 tested,
                 value: 0.0,
@@ -206,13 +210,12 @@ impl Iterate {
     /// Modes and T_max of the contacts that are not tied, at the start of the current major iteration.
     fn brought(&self) -> Vec<AssumedMode> {
         let first = self.state.major.minor_history.first(self.state.nodes.len());
-        let of = |(input, slave): (&Input, &Contact)| {
-            (!slave.bond.is_tied()).then(|| AssumedMode::from_mode(input.mode, input.t_max))
-        };
         first
             .iter()
             .zip(&self.model.contacts)
-            .filter_map(of)
+            .filter_map(|(input, slave)| {
+                (!slave.bond.is_tied()).then(|| AssumedMode::from_mode(input.mode, input.t_max))
+            })
             .collect()
     }
 

@@ -61,10 +61,9 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let record = view.record(slave);
     let decision = record.map(|record| record.decision);
     let hidden = app.learning.hides(view, slave);
-    let tests = record
-        .filter(|_| !hidden)
-        .map(|record| tests(record, view, inner.width as usize, theme))
-        .unwrap_or_default();
+    let tests = record.filter(|_| !hidden).map_or(Vec::new(), |record| {
+        tests(record, view, inner.width as usize, theme)
+    });
     let tests: Vec<Line> = match record.filter(|_| !hidden) {
         Some(record) => tests
             .into_iter()
@@ -141,9 +140,9 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     };
     let room = (inner.height as usize).saturating_sub(all.len());
     let width = usize::from(inner.width);
-    let measured = record
-        .map(|record| measured(record, slave, width, view, theme))
-        .unwrap_or_default();
+    let measured = record.map_or(Vec::new(), |record| {
+        measured(record, slave, width, view, theme)
+    });
     let zoomed = !measured.is_empty() && room > measured.len() + 1 + pushes.len();
     if !zoomed && room > 1 && pushes.len() > 1 {
         all.push(Line::default());
@@ -329,18 +328,16 @@ fn measured(
     ];
     let contact = &view.model.contacts[slave];
     let by_area = contact.pressure(round_off.force(record.f_n), round_off.force(record.f_t));
-    let of_area = by_area
-        .map(|[pressure, shear]| {
-            vec![
-                (
-                    "F_n / A",
-                    signed(pressure),
-                    "contact pressure on the node's undeformed tributary area",
-                ),
-                ("F_t / A", signed(shear), "contact shear"),
-            ]
-        })
-        .unwrap_or_default();
+    let of_area = by_area.map_or(Vec::new(), |[pressure, shear]| {
+        vec![
+            (
+                "F_n / A",
+                signed(pressure),
+                "contact pressure on the node's undeformed tributary area",
+            ),
+            ("F_t / A", signed(shear), "contact shear"),
+        ]
+    });
     let heading = Line::styled(" Values of this minor iteration", theme.heading);
     let row = |(mut name, mut value, meaning): (&'static str, String, &str)| {
         let meaning = paint::wrap(meaning, width.saturating_sub(NAME + VALUE + 4));
