@@ -20,8 +20,7 @@ use crate::step::iterate::Iterate;
 use crate::step::jump::AcceptanceNotes;
 use crate::step::pace::RATIO;
 use crate::{
-    ContactState, Failure, Finding, Mode, Model, Norms, Outcome, Pace, Singular, State, Stepper,
-    Verdict,
+    Failure, Finding, Mode, Model, Norms, Outcome, Pace, Singular, State, Stepper, Verdict,
 };
 use std::sync::Arc;
 

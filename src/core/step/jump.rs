@@ -17,7 +17,6 @@
 use crate::model::Jumps;
 use crate::step::iterate::Iterate;
 use crate::step::pace::SuspectIncrement;
-use crate::step::recovery::fallback::FallbackState;
 use crate::step::watch::FAR;
 use crate::strategy;
 use crate::{

@@ -2,8 +2,7 @@
 
 use crate::contact::table1::t_max;
 use crate::interface::method::{NoProposal, Proposal, SearchInput};
-use crate::interface::minor_history::Input;
-use crate::model::{Contact, Geometry};
+use crate::model::Geometry;
 use crate::step::iterate::Iterate;
 use crate::step::recovery::FROZEN;
 use crate::step::recovery::left_out::OmittedStep;
@@ -213,9 +212,8 @@ impl Iterate {
         first
             .iter()
             .zip(&self.model.contacts)
-            .filter_map(|(input, slave)| {
-                (!slave.bond.is_tied()).then(|| AssumedMode::from_mode(input.mode, input.t_max))
-            })
+            .filter(|(_, slave)| !slave.bond.is_tied())
+            .map(|(input, _)| AssumedMode::from_mode(input.mode, input.t_max))
             .collect()
     }
 

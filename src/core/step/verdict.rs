@@ -12,8 +12,8 @@
 use crate::model::{SlipCount, Sticking, TieRule};
 use crate::step::iterate::Iterate;
 use crate::{
-    ContactState, Failure, Finding, Forced, JudgedLaw, Norms, Outcome, PointDeformation, Source,
-    State, Stepper, Verdict,
+    Failure, Finding, Forced, JudgedLaw, Norms, Outcome, PointDeformation, Source, State, Stepper,
+    Verdict,
 };
 
 impl Stepper {

@@ -56,7 +56,7 @@ pub fn describe(model: &Model, failure: &Failure) -> String {
             "no strategy of the ladder found a consistent state (first failure: {}; last: {}){}",
             describe(model, first),
             describe(model, last),
-            if scales { "; without gaps, the problem scales with the load, so a smaller increment would not help" } else { "" }
+            if *scales { "; without gaps, the problem scales with the load, so a smaller increment would not help" } else { "" }
         ),
         Failure::NotFound(why) => not_found(*why),
         Failure::Singular(Singular::Rigid { motions }) => {

@@ -31,7 +31,7 @@ use crate::step::arc_state::{ArcState, Change};
 use crate::step::iterate::Iterate;
 use crate::{
     BoundUpdate, ContactRecord, ContactState, Failure, Forced, Friction, Mode, NodeIncrement,
-    NodeKinematics, Outcome, SolveResult, State,
+    Outcome, SolveResult, State,
 };
 use std::sync::Arc;
 

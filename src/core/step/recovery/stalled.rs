@@ -3,7 +3,7 @@
 use super::fallback::{DEEPER, Fallback};
 use crate::model::{BodyKind, Factor, Jumps, SearchMode};
 use crate::plane::max_abs;
-use crate::{ContactState, Failure, Mode, Model, Singular, Source, State};
+use crate::{Failure, Mode, Model, Singular, Source, State};
 
 /// Minimum size of a half, as a fraction of the whole increment.
 const SMALLEST_HALF: f64 = 1e-9;
