@@ -1,12 +1,15 @@
-//! Elimination order by nested dissection, so that a local change affects few fronts.
+//! Elimination order by nested dissection, so that a local change affects few fronts, and subtrees are independent.
 //!
 //! In a long strip, minimum degree eliminates from one end to the other: a change at one place affects all later fronts. Here a
-//! part of the graph is cut in two by a level set of the distance from a far end, which is eliminated last. The halves are cut
-//! recursively until a part is no longer many times larger than its cut; such parts are ordered by minimum degree. With m parts,
-//! a change then affects one part and log m cuts.
+//! part of the graph is cut in two at a height: x or y where the positions are known, otherwise the distance from a far end. The
+//! cut, which is eliminated last, contains the groups up to that height with neighbours beyond. The halves are cut recursively
+//! until a part is no longer many times larger than its cut; such parts are ordered by minimum degree. With m parts, a change
+//! then affects one part and log m cuts.
 
 use super::check::SolveError;
 use super::graph::Graph;
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
 
 /// A part is not cut if it has fewer unknowns than this, or fewer than this multiple of its cut.
 const LEAST: usize = 48;
@@ -22,17 +25,27 @@ struct Dissection<'a> {
     parts: usize,
     /// Distance from the start of the last search.
     level: Vec<usize>,
+    /// Rank of each group's x and y; empty if the positions are unknown.
+    ranks: [Vec<usize>; 2],
     order: Vec<usize>,
 }
 
-/// The groups of a graph in elimination order.
-pub(super) fn order(graph: &Graph) -> Result<Vec<usize>, SolveError> {
+/// A cut of a part: the index of its height among those that can be chosen, and the rank of the highest groups before it.
+struct Cut {
+    weight: usize,
+    heights: usize,
+    rank: usize,
+}
+
+/// The groups of a graph in elimination order; `positions` are theirs, or empty.
+pub(super) fn order(graph: &Graph, positions: &[[f64; 2]]) -> Result<Vec<usize>, SolveError> {
     let count = graph.count();
     let mut dissection = Dissection {
         graph,
         part: vec![0; count],
         parts: 1,
         level: vec![usize::MAX; count],
+        ranks: [0, 1].map(|axis| ranks(positions, axis)),
         order: Vec::with_capacity(count),
     };
     dissection.put_in_order((0..count).collect())?;
@@ -70,10 +83,7 @@ impl Dissection<'_> {
     /// As [`Dissection::put_in_order`], where `found` is a whole part sorted by distance from some group.
     fn put_connected_in_order(&mut self, found: Vec<usize>) -> Result<(), SolveError> {
         let cut = match found.last() {
-            Some(&far) if self.weight(&found) >= LEAST => {
-                let found = self.search(far);
-                self.cut(&found)
-            }
+            Some(&far) if self.weight(&found) >= LEAST => self.cut(found.clone(), far),
             _ => None,
         };
         let Some([before, after, cut]) = cut else {
@@ -111,35 +121,92 @@ impl Dissection<'_> {
         found
     }
 
-    /// Cuts a part, sorted by levels, at the lightest level near its middle: the halves and the cut. `None` if the cut is not
-    /// small.
-    fn cut(&self, found: &[usize]) -> Option<[Vec<usize>; 3]> {
-        let all = self.weight(found);
-        let mut before = 0;
-        let mut best: Option<(usize, usize)> = None;
-        for level in found.chunk_by(|&a, &b| self.level[a] == self.level[b]) {
-            let own = self.weight(level);
-            let least = (before.min(all - before - own)) as f64;
-            if least >= HALF * all as f64 && best.is_none_or(|(weight, _)| own < weight) {
-                best = Some((own, self.level[level[0]]));
-            }
-            before += own;
+    /// Cuts a part where the cut is lightest: the halves and the cut. `None` if the cut is not small.
+    fn cut(&mut self, mut found: Vec<usize>, far: usize) -> Option<[Vec<usize>; 3]> {
+        let cut = if self.ranks[0].is_empty() {
+            found = self.search(far);
+            self.lightest(&found, 2)
+        } else {
+            let cuts = [0, 1].map(|axis| {
+                found.sort_unstable_by_key(|&group| self.ranks[axis][group]);
+                self.lightest(&found, axis)
+            });
+            cuts.into_iter().flatten().min_by_key(|cut| cut.weight)
+        }?;
+        if cut.weight * TIMES > self.weight(&found) {
+            return None;
         }
-        let (_, at) = best.filter(|(weight, _)| weight * TIMES <= all)?;
+        let heights = self.heights(cut.heights);
         let beyond = |group: usize| {
             let mut others = self.graph.neighbours(group).iter();
-            others.any(|&other| self.part[other] == self.part[group] && self.level[other] > at)
+            others.any(|&other| self.part[other] == self.part[group] && heights[other] > cut.rank)
         };
         let mut parts = [Vec::new(), Vec::new(), Vec::new()];
-        for &group in found {
-            let which = match self.level[group] {
-                level if level < at => 0,
-                level if level > at => 1,
-                _ if beyond(group) => 2,
-                _ => 0,
+        for group in found {
+            let which = match heights[group] > cut.rank {
+                true => 1,
+                false if beyond(group) => 2,
+                false => 0,
             };
             parts[which].push(group);
         }
         Some(parts)
     }
+
+    /// Heights at which a part can be cut: ranks of x, ranks of y, or levels.
+    fn heights(&self, which: usize) -> &[usize] {
+        self.ranks.get(which).unwrap_or(&self.level)
+    }
+
+    /// The lightest cut of a part, sorted by these heights, near its middle.
+    fn lightest(&self, found: &[usize], which: usize) -> Option<Cut> {
+        let heights = self.heights(which);
+        let all = self.weight(found);
+        // Groups with neighbours beyond the current height, by the height up to which these reach.
+        let mut open = BinaryHeap::new();
+        let (mut below, mut weight) = (0, 0);
+        let mut best: Option<Cut> = None;
+        for level in found.chunk_by(|&a, &b| heights[a] == heights[b]) {
+            let rank = heights[level[0]];
+            for &group in level {
+                let own = self.graph.members(group).len();
+                let same = |&&other: &&usize| self.part[other] == self.part[group];
+                let others = self.graph.neighbours(group).iter().filter(same);
+                let reach = others.map(|&other| heights[other]).max().unwrap_or(0);
+                below += own;
+                if reach > rank {
+                    weight += own;
+                    open.push((Reverse(reach), own));
+                }
+            }
+            while let Some(&(Reverse(reach), own)) = open.peek()
+                && reach <= rank
+            {
+                weight -= own;
+                open.pop();
+            }
+            let least = (below - weight).min(all - below) as f64;
+            let lighter = best.as_ref().is_none_or(|best| weight < best.weight);
+            if least >= HALF * all as f64 && lighter {
+                best = Some(Cut {
+                    weight,
+                    heights: which,
+                    rank,
+                });
+            }
+        }
+        best
+    }
+}
+
+/// Ranks of a coordinate; equal coordinates have the same.
+fn ranks(positions: &[[f64; 2]], axis: usize) -> Vec<usize> {
+    let mut sorted: Vec<usize> = (0..positions.len()).collect();
+    sorted.sort_by(|&a, &b| positions[a][axis].total_cmp(&positions[b][axis]));
+    let mut ranks = vec![0; positions.len()];
+    let same = |a: &usize, b: &usize| positions[*a][axis] == positions[*b][axis];
+    for (rank, equal) in sorted.chunk_by(same).enumerate() {
+        equal.iter().for_each(|&group| ranks[group] = rank);
+    }
+    ranks
 }

@@ -15,6 +15,9 @@
 //! A front is factored again only if its entries or a child's remainder have changed. The minor iterations of a major iteration
 //! therefore repeat only the parts that depend on changed modes, with the same bits as a full factorization. Remainders are
 //! stored if changing rows may need them again, otherwise only until the parent has used them.
+//!
+//! The forward substitution works front by front, too: a front passes the change of the right-hand side of its later rows to its
+//! parent, and is repeated only if its factors, its part of the right-hand side or a child's change are new.
 
 use super::check::{SolveError, are_equal};
 use super::front::{Front, STEPS, substitute, substitute_back, subtract, subtract_all};
@@ -43,6 +46,11 @@ struct FactoredNode {
     changed: bool,
     /// Magnitude of its smallest pivot.
     smallest: f64,
+    /// L⁻¹ b of its pivots' rows and the change of the delayed and the later ones, in the last solve; `solved` if they are valid.
+    forward: Vec<f64>,
+    solved: bool,
+    /// Whether the last solve computed them.
+    repeated: bool,
 }
 
 /// The fronts of a pattern, with their factors.
@@ -59,8 +67,10 @@ pub struct Fronts {
     front: Front,
     /// Temporary remainders, the last one on top.
     stack: Vec<f64>,
-    /// Workspace by equation for solves.
-    forward: Vec<f64>,
+    /// The right-hand side of the last solve, by equation.
+    b: Vec<f64>,
+    /// Workspace for solves: places in a front by equation, and a part of the solution.
+    places: Vec<usize>,
     own: Vec<f64>,
 }
 
@@ -96,6 +106,9 @@ impl Fronts {
             remainder: Vec::new(),
             changed: true,
             smallest: 0.0,
+            forward: Vec::new(),
+            solved: false,
+            repeated: false,
         });
         Ok(Fronts {
             fronts: fronts.collect(),
@@ -105,7 +118,8 @@ impl Fronts {
             ready: false,
             front: Front::default(),
             stack: Vec::new(),
-            forward: vec![0.0; pattern.size()],
+            b: vec![0.0; pattern.size()],
+            places: vec![0; pattern.size()],
             own: Vec::new(),
         })
     }
@@ -186,12 +200,22 @@ impl Fronts {
 
     /// Solves A x = b; `x` contains b on entry.
     pub fn solve(&mut self, x: &mut [f64]) {
-        self.forward.copy_from_slice(x);
-        for front in &self.fronts {
-            front.forward(&mut self.own, &mut self.forward);
+        for k in 0..self.fronts.len() {
+            let (done, rest) = self.fronts.split_at_mut(k);
+            let Some(own) = rest.first_mut() else { break };
+            let pivots = &own.node.unknowns[..own.node.pivots];
+            let same = |&unknown: &usize| self.b[unknown].to_bits() == x[unknown].to_bits();
+            let repeated = !own.solved
+                || own.children.iter().any(|&c| done[c].repeated)
+                || !pivots.iter().all(same);
+            own.repeated = repeated;
+            if repeated {
+                own.substitute(done, &mut self.places, x);
+            }
         }
+        self.b.copy_from_slice(x);
         for front in self.fronts.iter().rev() {
-            front.backward(&mut self.own, &self.forward, x);
+            front.backward(&mut self.own, x);
         }
     }
 }
@@ -279,6 +303,7 @@ impl FactoredNode {
     fn keep(&mut self, front: &Front, done: usize, stack: &mut Vec<f64>) {
         let size = front.rows.len();
         self.done = done;
+        self.solved = false;
         self.rows.clone_from(&front.rows);
         self.columns.clone_from(&front.columns);
         let (own, rest) = front.matrix.split_at(done * size);
@@ -300,19 +325,30 @@ impl FactoredNode {
         self.smallest = pivots.fold(f64::INFINITY, |least, pivot| least.min(pivot.abs()));
     }
 
-    fn forward(&self, own: &mut Vec<f64>, b: &mut [f64]) {
-        own.clear();
-        own.extend(self.rows.iter().map(|&row| b[row]));
-        substitute(&self.lower, own);
-        for (own, &row) in own.iter().zip(&self.rows) {
-            b[row] = *own;
+    /// Computes `forward` from the right-hand side b and its children's; `places` is workspace by equation.
+    fn substitute(&mut self, done: &[FactoredNode], places: &mut [usize], b: &[f64]) {
+        for (place, &row) in self.rows.iter().enumerate() {
+            places[row] = place;
         }
+        self.forward.clear();
+        self.forward.resize(self.rows.len(), 0.0);
+        for &row in &self.node.unknowns[..self.node.pivots] {
+            self.forward[places[row]] = b[row];
+        }
+        for child in self.children.iter().map(|&c| &done[c]) {
+            let left = child.rows[child.done..].iter();
+            for (&row, change) in left.zip(&child.forward[child.done..]) {
+                self.forward[places[row]] += change;
+            }
+        }
+        substitute(&self.lower, &mut self.forward);
+        self.solved = true;
     }
 
-    fn backward(&self, own: &mut Vec<f64>, b: &[f64], x: &mut [f64]) {
+    fn backward(&self, own: &mut Vec<f64>, x: &mut [f64]) {
         let (size, done) = (self.rows.len(), self.done);
         own.clear();
-        own.extend(self.rows[..done].iter().map(|&row| b[row]));
+        own.extend_from_slice(&self.forward[..done]);
         let mut columns = self.upper.chunks_exact(done.max(1));
         let mut later = self.columns[done..].chunks_exact(STEPS);
         for later in &mut later {

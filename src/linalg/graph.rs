@@ -1,8 +1,10 @@
 //! Graph of groups of unknowns and their coupling, for computing an elimination order.
 
 use super::check::SolveError;
-use super::order::least_fill;
 use super::pattern::{Pattern, lists};
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::sparse::SymbolicSparseColMatRef;
+use faer::sparse::linalg::amd;
 use std::collections::HashMap;
 
 /// Marks groups without a number.
@@ -109,4 +111,17 @@ impl Graph {
         let order = least_fill(&starts, &seen)?;
         Ok(order.iter().map(|&k| groups[k]).collect())
     }
+}
+
+/// A fill-reducing order of a symmetric graph, given by its adjacency lists.
+pub(super) fn least_fill(starts: &[usize], neighbours: &[usize]) -> Result<Vec<usize>, SolveError> {
+    let count = starts.len() - 1;
+    let graph = SymbolicSparseColMatRef::new_checked(count, count, starts, None, neighbours);
+    let (mut order, mut place) = (vec![0; count], vec![0; count]);
+    let request = amd::order_scratch::<usize>(count, neighbours.len());
+    let mut memory = MemBuffer::try_new(request).map_err(|_| SolveError::OutOfMemory)?;
+    let stack = MemStack::new(&mut memory);
+    amd::order(&mut order, &mut place, graph, Default::default(), stack)
+        .map_err(|_| SolveError::OutOfMemory)?;
+    Ok(order)
 }

@@ -24,8 +24,8 @@ const SWEEPS: usize = 3;
 
 /// Backward error above which a solution is rejected.
 const BACKWARD_LIMIT: f64 = 1e-9;
-/// Backward error above which a solution is refined: a few units of round-off.
-const REFINED: f64 = 1e-15;
+/// Backward error above which a solution is refined: round-off of large systems is below this.
+const REFINED: f64 = 1e-14;
 /// If the smallest pivot is above this, the matrix is regular, and the norm of its inverse is not estimated by a solve.
 const REGULAR: f64 = 1e-6;
 /// Values with a smaller exponent count as zero.
@@ -192,6 +192,9 @@ impl Factors {
         x.copy_from_slice(b);
         self.apply_inverse(x);
         let mut error = self.backward_error(b, x);
+        if std::env::var("FR").is_ok() {
+            eprintln!("FR {:.0}", 10.0 * error.log10());
+        }
         if error > REFINED || error.is_nan() {
             let mut correction = std::mem::take(&mut self.correction);
             for (c, (r, b)) in correction.iter_mut().zip(self.residual.iter().zip(b)) {

@@ -1,13 +1,20 @@
 //! Elimination order of a symmetric matrix.
 
 use super::check::SolveError;
+use super::dissection;
+use super::graph::{Graph, least_fill};
 use super::pattern::Pattern;
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::sparse::SymbolicSparseColMatRef;
-use faer::sparse::linalg::amd;
+use super::tree::in_postorder;
 
-/// A fill-reducing order of the unknowns with `last` at the end.
-pub(super) fn order(pattern: &Pattern, last: &[usize]) -> Result<Vec<usize>, SolveError> {
+/// A matrix with at least this many unknowns is dissected if their positions are known.
+const LARGE: usize = 10_000;
+
+/// A fill-reducing order of the unknowns with `last` at the end; `positions` are those of the unknowns, or empty.
+pub(super) fn order(
+    pattern: &Pattern,
+    last: &[usize],
+    positions: &[[f64; 2]],
+) -> Result<Vec<usize>, SolveError> {
     const LAST: usize = usize::MAX;
     let n = pattern.n;
     let mut number = vec![0; n];
@@ -28,20 +35,33 @@ pub(super) fn order(pattern: &Pattern, last: &[usize]) -> Result<Vec<usize>, Sol
         rows.extend(entries.filter(|&row| row != LAST));
         starts.push(rows.len());
     }
-    let forward = least_fill(&starts, &rows)?;
+    let forward = match positions.is_empty() || inner.len() < LARGE {
+        true => least_fill(&starts, &rows)?,
+        false => {
+            let inside = Pattern {
+                n: inner.len(),
+                col_ptr: starts,
+                row_idx: rows,
+            };
+            let positions = inner.iter().map(|&unknown| positions[unknown]);
+            dissected(&inside, &positions.collect::<Vec<_>>())?
+        }
+    };
     let reduced = forward.iter().map(|&k| inner[k]);
     Ok(reduced.chain(last.iter().copied()).collect())
 }
 
-/// A fill-reducing order of a symmetric graph, given by its adjacency lists.
-pub(super) fn least_fill(starts: &[usize], neighbours: &[usize]) -> Result<Vec<usize>, SolveError> {
-    let count = starts.len() - 1;
-    let graph = SymbolicSparseColMatRef::new_checked(count, count, starts, None, neighbours);
-    let (mut order, mut place) = (vec![0; count], vec![0; count]);
-    let request = amd::order_scratch::<usize>(count, neighbours.len());
-    let mut memory = MemBuffer::try_new(request).map_err(|_| SolveError::OutOfMemory)?;
-    let stack = MemStack::new(&mut memory);
-    amd::order(&mut order, &mut place, graph, Default::default(), stack)
-        .map_err(|_| SolveError::OutOfMemory)?;
-    Ok(order)
+/// The unknowns by nested dissection; consecutive ones at the same position are eliminated together.
+fn dissected(pattern: &Pattern, positions: &[[f64; 2]]) -> Result<Vec<usize>, SolveError> {
+    let (mut groups, mut of_groups) = (Vec::with_capacity(pattern.n), Vec::new());
+    for &position in positions {
+        if of_groups.last() != Some(&position) {
+            of_groups.push(position);
+        }
+        groups.push(of_groups.len() - 1);
+    }
+    let graph = Graph::new(pattern, &groups, pattern.n);
+    let order = in_postorder(&graph, dissection::order(&graph, &of_groups)?);
+    let members = order.iter().flat_map(|&group| graph.members(group));
+    Ok(members.copied().collect())
 }

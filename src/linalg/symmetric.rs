@@ -70,13 +70,18 @@ pub struct SymmetricFactors {
 }
 
 impl SymmetricFactors {
-    /// Analyses the upper half of a symmetric pattern; the unknowns `last` are eliminated last, in their order.
+    /// Analyses the upper half of a symmetric pattern; the unknowns `last` are eliminated last, in their order. `positions` are
+    /// those of the unknowns, from which large matrices get a better elimination order, or empty.
     ///
     /// # Errors
     /// [`SolveError::Singular`] if the pattern lacks a diagonal entry of `last`; [`SolveError::OutOfMemory`].
-    pub fn new(pattern: Arc<Pattern>, last: &[usize]) -> Result<Self, SolveError> {
+    pub fn new(
+        pattern: Arc<Pattern>,
+        last: &[usize],
+        positions: &[[f64; 2]],
+    ) -> Result<Self, SolveError> {
         let n = pattern.n;
-        let order = order(&pattern, last)?;
+        let order = order(&pattern, last, positions)?;
         let (lower, from) = pattern.in_order(&order);
         let params = CholeskySymbolicParams {
             supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
@@ -405,7 +410,7 @@ mod tests {
         for (pull, shift) in [(0.0, 0.0), (0.0, 2.5), (2.9, 1.0)] {
             let (pattern, mut a) = grid(9, pull);
             let last: Vec<usize> = (0..81).filter(|i| i % 9 == 0 || i % 13 == 5).collect();
-            let mut factors = SymmetricFactors::new(pattern.clone(), &last).unwrap();
+            let mut factors = SymmetricFactors::new(pattern.clone(), &last, &[]).unwrap();
             factors
                 .factor(&values(&pattern, &a), shift, &SequentialExecutor)
                 .unwrap();
@@ -447,7 +452,8 @@ mod tests {
 
     #[test]
     fn factors_have_the_same_bits_on_one_thread_and_on_many() {
-        let side = 100;
+        // Large enough for a dissection.
+        let side = 110;
         let n = side * side;
         let steps = [0, 1, side - 1, side, side + 1, 2 * side];
         let entries = (0..n).flat_map(|i| steps.map(|step| (i, i + step)));
@@ -459,22 +465,29 @@ mod tests {
         };
         let values: Vec<f64> = pattern.iter().enumerate().map(value).collect();
         let last: Vec<usize> = (0..side).collect();
-        let mut factors = SymmetricFactors::new(pattern, &last).unwrap();
-        assert!(factors.tree.is_split());
+        let positions: Vec<[f64; 2]> = (0..n)
+            .map(|i| [i % side, i / side].map(|k| k as f64))
+            .collect();
         let b: Vec<f64> = (0..n).map(|i| (i as f64).cos()).collect();
-        let mut solve = |executor: &dyn Executor| {
-            let mut x = vec![0.0; n];
-            factors.factor(&values, 0.5, executor).unwrap();
-            factors.solve(&b, &mut x).unwrap();
-            (factors.factors.clone(), x)
-        };
-        assert!(solve(&SequentialExecutor) == solve(&Threads));
+        let sizes = [&positions[..], &[]].map(|positions| {
+            let mut factors = SymmetricFactors::new(pattern.clone(), &last, positions).unwrap();
+            assert!(factors.tree.is_split());
+            let mut solve = |executor: &dyn Executor| {
+                let mut x = vec![0.0; n];
+                factors.factor(&values, 0.5, executor).unwrap();
+                factors.solve(&b, &mut x).unwrap();
+                (factors.factors.clone(), x)
+            };
+            assert!(solve(&SequentialExecutor) == solve(&Threads));
+            factors.factors.len()
+        });
+        assert!(sizes[0] < sizes[1], "a dissection fills less: {sizes:?}");
     }
 
     #[test]
     fn growth_beyond_round_off_is_detected_when_factoring() {
         let pattern = Arc::new(Pattern::new(2, vec![(0, 0), (0, 1), (1, 1)]));
-        let mut factors = SymmetricFactors::new(pattern, &[1]).unwrap();
+        let mut factors = SymmetricFactors::new(pattern, &[1], &[]).unwrap();
         assert!(
             factors
                 .factor(&[-0.1, 1.0, 0.0], 0.0, &SequentialExecutor)
@@ -493,7 +506,7 @@ mod tests {
         for pull in [0.0, 2.0, 2.9, 4.55] {
             let (pattern, a) = grid(9, pull);
             let last: Vec<usize> = (0..81).filter(|i| i % 9 == 0).collect();
-            let mut factors = SymmetricFactors::new(pattern.clone(), &last).unwrap();
+            let mut factors = SymmetricFactors::new(pattern.clone(), &last, &[]).unwrap();
             factors
                 .factor(&values(&pattern, &a), 0.0, &SequentialExecutor)
                 .unwrap();
@@ -511,7 +524,7 @@ mod tests {
     #[test]
     fn a_vanishing_pivot_is_detected() {
         let pattern = Arc::new(Pattern::new(2, vec![(0, 0), (0, 1), (1, 1)]));
-        let mut factors = SymmetricFactors::new(pattern, &[]).unwrap();
+        let mut factors = SymmetricFactors::new(pattern, &[], &[]).unwrap();
         let told = factors
             .factor(&[1e-30, 1.0, 0.0], 0.0, &SequentialExecutor)
             .is_err()

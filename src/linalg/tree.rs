@@ -49,7 +49,7 @@ impl Tree {
         let (mut order, mut joined) =
             tried(&graph, graph.part_in_order((0..graph.count()).collect())?);
         if graph.changing.contains(&true) {
-            let other = tried(&graph, dissection::order(&graph)?);
+            let other = tried(&graph, dissection::order(&graph, &[])?);
             if operations(&other.1) < operations(&joined) {
                 (order, joined) = other;
             }
@@ -125,6 +125,13 @@ fn tried(graph: &Graph, groups: Vec<usize>) -> (Order, Vec<EliminationGroup>) {
     let order = order.in_postorder(&parents);
     let joined = join(graph, &order);
     (order, joined)
+}
+
+/// An equivalent order of the groups with all descendants directly before each group.
+pub(super) fn in_postorder(graph: &Graph, groups: Vec<usize>) -> Vec<usize> {
+    let order = Order::new(groups);
+    let parents = parents(graph, &order);
+    order.in_postorder(&parents).groups
 }
 
 /// The elimination tree: for each position in the order, the first later group coupled to it by fill.

@@ -139,7 +139,9 @@ fn parts(model: &Model, executor: Arc<dyn Executor>) -> (f64, f64) {
         .collect();
     last.sort_unstable();
     last.dedup();
-    let mut factors = SymmetricFactors::new(pattern.clone(), &last).expect("a pattern to factor");
+    let mut factors =
+        SymmetricFactors::new(pattern.clone(), &last, &model.positions_of_equations())
+            .expect("a pattern to factor");
     let zeros = vec![0.0; dofs.len()];
     let (mut force, mut size) = (zeros.clone(), zeros.clone());
     let (mut values, mut coupling) = (vec![0.0; pattern.entries()], vec![0.0; equations]);

@@ -119,7 +119,12 @@ impl Condensation {
         };
         Ok(Condensation {
             way,
-            parts: parts(&pattern, &equations, &*executor)?,
+            parts: parts(
+                &pattern,
+                &equations,
+                &model.positions_of_equations(),
+                &*executor,
+            )?,
             executor,
             pattern,
             number,
@@ -452,6 +457,7 @@ impl BodyGroup {
         pattern: &Pattern,
         equations: Range<usize>,
         interface: &[usize],
+        positions: &[[f64; 2]],
     ) -> Result<Self, SolveError> {
         let own = interface.iter().enumerate();
         let own = own.filter(|(_, equation)| equations.contains(equation));
@@ -461,7 +467,11 @@ impl BodyGroup {
         let (pattern, values) = pattern.block(equations.clone());
         let c = unknowns.len();
         Ok(BodyGroup {
-            factors: SymmetricFactors::new(Arc::new(pattern), &last)?,
+            factors: SymmetricFactors::new(
+                Arc::new(pattern),
+                &last,
+                &positions[equations.clone()],
+            )?,
             values,
             unknowns,
             schur: vec![0.0; c * c],
@@ -511,6 +521,7 @@ impl BodyGroup {
 fn parts(
     pattern: &Pattern,
     interface: &[usize],
+    positions: &[[f64; 2]],
     executor: &dyn Executor,
 ) -> Result<Vec<BodyGroup>, SolveError> {
     let mut ranges: Vec<Range<usize>> = Vec::new();
@@ -522,7 +533,7 @@ fn parts(
     }
     let mut parts: Vec<_> = ranges.into_iter().map(|range| (range, None)).collect();
     each(executor, &mut parts, &|(range, part)| {
-        *part = Some(BodyGroup::new(pattern, range.clone(), interface));
+        *part = Some(BodyGroup::new(pattern, range.clone(), interface, positions));
     });
     parts.into_iter().filter_map(|(_, part)| part).collect()
 }

@@ -152,7 +152,7 @@ impl Tangent {
         last: Vec<usize>,
     ) -> Option<Dense> {
         if self.factors.as_ref().is_none_or(|(had, _)| *had != last) {
-            let factors = SymmetricFactors::new(self.pattern.clone(), &last).ok()?;
+            let factors = SymmetricFactors::new(self.pattern.clone(), &last, &[]).ok()?;
             self.factors = Some((last, factors));
         }
         let (last, factors) = self.factors.as_mut()?;

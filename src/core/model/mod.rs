@@ -383,6 +383,19 @@ impl Model {
         self.pressures.iter().all(|p| p.expands.is_some_and(small))
     }
 
+    /// Initial position of the node of each equation; the origin for internal unknowns of bodies.
+    pub fn positions_of_equations(&self) -> Vec<[f64; 2]> {
+        let mut positions = vec![[0.0; 2]; self.dofs.equations];
+        let dofs = self.dofs.first.iter().zip(&self.dofs.count);
+        for (node, (&first, &count)) in self.nodes.iter().zip(dofs) {
+            let own = &self.dofs.equation[first..first + usize::from(count)];
+            for &equation in own.iter().flatten() {
+                positions[equation] = node.at;
+            }
+        }
+        positions
+    }
+
     /// Turns a scene of contacts ([`Model::from_contacts`]) into one in space; `heights` are the z of its nodes.
     pub fn raise(&mut self, heights: Vec<f64>) {
         let ends = |low: f64, high: f64| {
