@@ -247,9 +247,8 @@ fn parameters(scene: &Scene) -> Vec<ParameterMessage> {
         let choices: Vec<String> = words
             .iter()
             .find(|(path, _)| *path == listed.path)
-            .map_or_else(Vec::new, |(_, words)| {
-                words.iter().map(|word| (*word).to_owned()).collect()
-            });
+            .map(|(_, words)| words.iter().map(|word| (*word).to_owned()).collect())
+            .unwrap_or_default();
         let (kind, value) = match listed.value.parse::<f64>() {
             _ if !choices.is_empty() => (ParameterKind::Choice, Value::from(listed.value)),
             Ok(_) if listed.kind.contains("whole") => {

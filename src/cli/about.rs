@@ -226,8 +226,8 @@ fn folder(folder: Option<PathBuf>) -> String {
         (false, false) => "does not exist, cannot be created",
     };
     let free = there.and_then(system::free_bytes);
-    let free = free.map_or(String::new(), |free| {
-        format!("; {} free", estimate::bytes(free))
-    });
+    let free = free
+        .map(|free| format!("; {} free", estimate::bytes(free)))
+        .unwrap_or_default();
     format!("{} {rights}{free}", folder.display())
 }

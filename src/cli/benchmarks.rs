@@ -61,7 +61,7 @@ fn report_table(list: &Benchmarks, compared: &[ComparedBenchmark]) {
 }
 
 fn row(benchmark: &Benchmark, compared: &ComparedBenchmark) -> Vec<String> {
-    let some = |value: Option<f64>, show: fn(f64) -> String| value.map_or_else(String::new, show);
+    let some = |value: Option<f64>, show: fn(f64) -> String| value.map(show).unwrap_or_default();
     vec![
         benchmark.case(),
         benchmark.what.clone(),

@@ -203,12 +203,14 @@ fn lines(chart: &Precision) -> Vec<String> {
             ),
             chart.series[point.series].clone(),
             point.name.clone(),
-            point.error.map_or_else(String::new, |error| {
-                format!("{}{round_off}", significant(error, 3))
-            }),
+            point
+                .error
+                .map(|error| format!("{}{round_off}", significant(error, 3)))
+                .unwrap_or_default(),
             point
                 .force_error
-                .map_or_else(String::new, |error| significant(error, 3)),
+                .map(|error| significant(error, 3))
+                .unwrap_or_default(),
             sig6((point.seconds * 1e5).round() / 1e5),
             point.factorizations.to_string(),
             point.majors.to_string(),

@@ -132,7 +132,8 @@ fn list() -> Result<String, Error> {
     let done = |lesson: &Lesson| {
         progress
             .of(&lesson.name)
-            .map_or(String::new(), |r| r.words())
+            .map(|r| r.words())
+            .unwrap_or_default()
     };
     let width = lessons
         .iter()

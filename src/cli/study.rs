@@ -133,7 +133,7 @@ fn lines(plan: &Plan, runs: &[Run]) -> Vec<String> {
         row.push(sig6(run.last().load));
         for name in monitors() {
             let value = run.value(run.last(), &AxisQuantity::Monitor(name.clone()));
-            row.push(value.map_or_else(String::new, sig6));
+            row.push(value.map(sig6).unwrap_or_default());
         }
         row.push(run.unsettled().to_string());
         row.push(end(run));

@@ -33,7 +33,7 @@ pub fn insert(scene: &mut Scene) -> Result<(), String> {
     };
     let mesh = read(&name).map_err(|why| format!("mesh: {why}"))?;
     let nodes = mesh.points.iter().enumerate().map(|(k, at)| NodeMessage {
-        name: mesh.labels.get(k).map_or_else(String::new, u64::to_string),
+        name: mesh.labels.get(k).map(u64::to_string).unwrap_or_default(),
         at: Some(match scene.dimension {
             3 => (*at).into(),
             _ => [at[0], at[1]].into(),

@@ -331,7 +331,7 @@ pub fn table(list: &Benchmarks, compared: &[ComparedBenchmark]) -> String {
     use super::csv::field;
     let mut text =
         String::from("case,what,source,value,ours,error,within,own,drift,allowed,standing\n");
-    let some = |value: Option<f64>| value.map_or_else(String::new, |value| format!("{value:?}"));
+    let some = |value: Option<f64>| value.map(|value| format!("{value:?}")).unwrap_or_default();
     for (benchmark, compared) in list.list.iter().zip(compared) {
         // Writing to a string does not fail.
         let _ = writeln!(

@@ -144,7 +144,7 @@ pub fn csv(charts: &[Precision]) -> String {
     let mut text = super::csv::comments(charts.iter().flat_map(|chart| &chart.about));
     text += "scene,series,run,settings,status,error,seconds,repeats,factorizations,majors,minors,increments,unknowns,\
              unsettled,front,force_error,fastest,slowest,uncertainty,force_uncertainty\n";
-    let cell = |value: Option<f64>| value.map_or_else(String::new, |value| format!("{value:?}"));
+    let cell = |value: Option<f64>| value.map(|value| format!("{value:?}")).unwrap_or_default();
     for (chart, point) in charts
         .iter()
         .flat_map(|c| c.points.iter().map(move |p| (c, p)))

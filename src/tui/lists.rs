@@ -253,7 +253,7 @@ impl App {
             *at = moved(*at, step, count, last, [Up, Down]);
             return None;
         }
-        let order = view.map_or(Vec::new(), |view| self.order(view));
+        let order = view.map(|view| self.order(view)).unwrap_or_default();
         let last = order.len().saturating_sub(1);
         let here = order.iter().position(|slave| *slave == self.selected);
         let row = |row: usize| order.get(row).copied().unwrap_or(0);

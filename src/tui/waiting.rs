@@ -58,7 +58,7 @@ impl App {
 
     /// Queues a bound key after its count.
     pub(super) fn put_off_key(&mut self, name: &str, count: Option<u32>, awaited: WaitReason) {
-        let digits = count.map_or(String::new(), |count| count.to_string());
+        let digits = count.map(|count| count.to_string()).unwrap_or_default();
         for key in digits
             .chars()
             .map(String::from)

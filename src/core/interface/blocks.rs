@@ -22,8 +22,8 @@ impl<const D: usize> Blocks<D> {
         contacts: usize,
         entries: impl Iterator<Item = (usize, usize, f64)> + Clone,
     ) -> Self {
-        let places = entries.clone().map(|(i, j, _)| (j / D, i / D));
-        let mut places: Vec<(usize, usize)> = places.collect();
+        let mut places: Vec<(usize, usize)> =
+            entries.clone().map(|(i, j, _)| (j / D, i / D)).collect();
         places.extend((0..contacts).map(|k| (k, k)));
         places.sort_unstable();
         places.dedup();
@@ -70,11 +70,13 @@ impl<const D: usize> Blocks<D> {
     }
 
     fn equals_its_transpose(&self) -> bool {
-        let mut columns = (0..self.contacts()).flat_map(|j| self.column(j).map(move |b| (j, b)));
-        columns.all(|(j, (i, block))| {
-            let other = self.find(j, i).map(|block| self.values[block]);
-            other.is_some_and(|other| (0..D).all(|k| (0..D).all(|l| other[l][k] == block[k][l])))
-        })
+        (0..self.contacts())
+            .flat_map(|j| self.column(j).map(move |b| (j, b)))
+            .all(|(j, (i, block))| {
+                let other = self.find(j, i).map(|block| self.values[block]);
+                other
+                    .is_some_and(|other| (0..D).all(|k| (0..D).all(|l| other[l][k] == block[k][l])))
+            })
     }
 
     /// Whether [`Blocks::row`] applies.
@@ -111,8 +113,10 @@ impl<const D: usize> Blocks<D> {
     /// The blocks of a column of blocks with their rows.
     pub fn column(&self, j: usize) -> impl Iterator<Item = (usize, &[[f64; D]; D])> {
         let range = self.starts[j]..self.starts[j + 1];
-        let rows = self.rows[range.clone()].iter().map(|&i| i as usize);
-        rows.zip(&self.values[range])
+        self.rows[range.clone()]
+            .iter()
+            .map(|&i| i as usize)
+            .zip(&self.values[range])
     }
 
     /// The diagonal block of a contact.

@@ -422,8 +422,11 @@ fn sum(a: &[f64], x: f64, b: &[f64], y: f64) -> Vec<f64> {
 
 /// The unit of forces: the problem's, or the largest force for zero motions.
 fn force(problem: &InterfaceProblem) -> f64 {
-    let starts = problem.relation.start.iter();
-    let largest = starts.fold(problem.force, |m, x| m.max(x.abs()));
+    let largest = problem
+        .relation
+        .start
+        .iter()
+        .fold(problem.force, |m, x| m.max(x.abs()));
     if largest > 0.0 { largest } else { 1.0 }
 }
 
@@ -435,18 +438,20 @@ fn numbers(problem: &InterfaceProblem) -> Vec<[Vec<f64>; 4]> {
     let of_node = |(place, node): (usize, &crate::interface::problem::ProblemNode)| {
         let force_of = |k: usize, had: f64| {
             let row = 2 * place + k;
-            let column = |j: usize| relation.response[j * count + row] * (length / force);
-            let mut form: Vec<f64> = (0..count).map(column).collect();
+            let mut form: Vec<f64> = (0..count)
+                .map(|j| relation.response[j * count + row] * (length / force))
+                .collect();
             form.push((relation.start[row] + had) / force);
             form
         };
         let motion_of = |k: usize, offset: f64, sign: f64| {
             let row = 2 * place + k;
-            let column = |j: usize| {
-                let own = if j == row { 1.0 } else { 0.0 };
-                sign * (own + relation.response[j * count + row] / relation.stiffness)
-            };
-            let mut form: Vec<f64> = (0..count).map(column).collect();
+            let mut form: Vec<f64> = (0..count)
+                .map(|j| {
+                    let own = if j == row { 1.0 } else { 0.0 };
+                    sign * (own + relation.response[j * count + row] / relation.stiffness)
+                })
+                .collect();
             let start = relation.start[row] / relation.stiffness + node.prescribed[k];
             form.push((offset + sign * start) / length);
             form

@@ -162,11 +162,14 @@ fn joined(had: &Consistent, own: &Consistent, places: &[usize]) -> Consistent {
         answer.nodes[place] = *node;
     }
     let with = |letters: &str, of_block: &str| -> String {
-        let letters = letters.chars().enumerate().map(|(at, letter)| {
-            let own = places.iter().position(|&place| place == at);
-            own.and_then(|k| of_block.chars().nth(k)).unwrap_or(letter)
-        });
-        letters.collect()
+        letters
+            .chars()
+            .enumerate()
+            .map(|(at, letter)| {
+                let own = places.iter().position(|&place| place == at);
+                own.and_then(|k| of_block.chars().nth(k)).unwrap_or(letter)
+            })
+            .collect()
     };
     let (first, of_block) = (had.answer.letters(), own.answer.letters());
     let olds = std::iter::once(&first).chain(&had.ties);
@@ -306,9 +309,10 @@ impl<'a> Walk<'a> {
     fn down(&mut self, depth: usize) {
         let Some(place) = self.problem.nodes.len().checked_sub(depth + 1) else {
             self.found.tried += 1;
-            match self.solve() {
-                true => self.take_solution(),
-                false => self.found.singular += 1,
+            if self.solve() {
+                self.take_solution()
+            } else {
+                self.found.singular += 1
             }
             return;
         };
@@ -348,9 +352,10 @@ impl<'a> Walk<'a> {
                 return;
             }
         }
-        match self.solve() {
-            true => self.take_solution(),
-            false => self.found.singular += 1,
+        if self.solve() {
+            self.take_solution()
+        } else {
+            self.found.singular += 1
         }
     }
 
@@ -397,8 +402,10 @@ impl<'a> Walk<'a> {
             self.z[0][self.pivots[at]] = value;
             self.z[1][self.pivots[at]] = probe;
         }
-        let sound = |z: &f64| z.is_finite() && z.abs() <= SINGULAR;
-        self.z[1].iter().all(sound) && self.z[0].iter().all(|z| z.is_finite())
+        self.z[1]
+            .iter()
+            .all(|z| z.is_finite() && z.abs() <= SINGULAR)
+            && self.z[0].iter().all(|z| z.is_finite())
     }
 
     /// Records the solution, unless it is worse than a previous one.
@@ -455,8 +462,11 @@ impl Census {
             }
             return;
         }
-        let same = |found: &&mut Consistent| is_same(problem, &found.answer, &answer);
-        match self.answers.iter_mut().find(same) {
+        match self
+            .answers
+            .iter_mut()
+            .find(|found| is_same(problem, &found.answer, &answer))
+        {
             Some(found) => found.ties.push(answer.letters()),
             None => self.answers.push(Consistent {
                 answer,

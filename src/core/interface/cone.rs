@@ -44,12 +44,14 @@ pub fn solve(
     let f = DVector::from_column_slice(sweeps.forces());
     let motion = w * &f + q;
     let (force, length) = (f.amax(), motion.amax().max(q.amax()));
-    let contacts = friction.iter().enumerate();
-    let found = contacts.map(|(k, friction)| {
-        let of = |all: &DVector<f64>| [all[3 * k], all[3 * k + 1], all[3 * k + 2]];
-        lawful(of(&f), of(&motion), friction, [force, length])
-    });
-    found.collect()
+    friction
+        .iter()
+        .enumerate()
+        .map(|(k, friction)| {
+            let of = |all: &DVector<f64>| [all[3 * k], all[3 * k + 1], all[3 * k + 2]];
+            lawful(of(&f), of(&motion), friction, [force, length])
+        })
+        .collect()
 }
 
 /// The contact with its mode; `None` if it violates a law.

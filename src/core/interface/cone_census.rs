@@ -51,12 +51,13 @@ pub fn census(
         if stop() {
             return None;
         }
-        let mode = |place: u32| match number / 3_usize.pow(place) % 3 {
-            0 => Mode::Free,
-            1 => Mode::Fixed,
-            _ => Mode::Sliding,
-        };
-        let modes: Vec<Mode> = (0..count).map(mode).collect();
+        let modes: Vec<Mode> = (0..count)
+            .map(|place| match number / 3_usize.pow(place) % 3 {
+                0 => Mode::Free,
+                1 => Mode::Fixed,
+                _ => Mode::Sliding,
+            })
+            .collect();
         let turns = if modes.contains(&Mode::Sliding) { 4 } else { 1 };
         for turn in 0..turns {
             let assigned = Assigned {
@@ -157,12 +158,14 @@ impl Assigned<'_> {
         let motion = self.w * &f + self.q;
         let sizes = [f.amax(), motion.amax().max(self.q.amax())];
         let of = |all: &DVector<f64>, k: usize| [all[3 * k], all[3 * k + 1], all[3 * k + 2]];
-        let contacts = self.friction.iter().enumerate();
-        let state = contacts.map(|(k, friction)| {
-            let found = lawful(of(&f, k), of(&motion, k), friction, sizes)?;
-            (found.mode == self.modes[k]).then_some(found)
-        });
-        state.collect()
+        self.friction
+            .iter()
+            .enumerate()
+            .map(|(k, friction)| {
+                let found = lawful(of(&f, k), of(&motion, k), friction, sizes)?;
+                (found.mode == self.modes[k]).then_some(found)
+            })
+            .collect()
     }
 
     /// The forces for directions of the sliding contacts, and the motion of these across them.

@@ -50,9 +50,10 @@ pub(super) fn local(
         }
         for _ in 0..HALVINGS {
             let middle = 0.5 * (low + high);
-            match (slide(middle).2 < 0.0) == below {
-                true => low = middle,
-                false => high = middle,
+            if (slide(middle).2 < 0.0) == below {
+                low = middle
+            } else {
+                high = middle
             }
         }
         let (f, along, _) = slide(low);

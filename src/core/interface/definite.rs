@@ -75,8 +75,11 @@ impl<'a> Compliance<'a> {
 
     /// Number of eigenvalues of the symmetric part with a magnitude of at most `size`.
     pub fn within(&self, size: f64) -> usize {
-        let values = self.parts.eigenvalues.iter();
-        values.filter(|value| value.abs() <= size).count()
+        self.parts
+            .eigenvalues
+            .iter()
+            .filter(|value| value.abs() <= size)
+            .count()
     }
 
     /// The problem with all eigenvalues below `below` replaced by `to` (length per force). `None` if W + 1/k becomes singular.
@@ -95,9 +98,10 @@ impl<'a> Compliance<'a> {
             }
         }
         // Without springs, a singular W has no response.
-        let stiffness = match relation.stiffness.is_finite() {
-            true => relation.stiffness,
-            false => self.problem.spring,
+        let stiffness = if relation.stiffness.is_finite() {
+            relation.stiffness
+        } else {
+            self.problem.spring
         };
         let count = relation.count();
         for k in 0..count {

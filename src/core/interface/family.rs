@@ -46,8 +46,10 @@ pub type Range = (usize, [[f64; 2]; 2]);
 pub fn families(problem: &InterfaceProblem, census: &Census) -> Vec<Family> {
     let mut groups: Vec<Vec<usize>> = Vec::new();
     for (number, state) in census.answers.iter().enumerate() {
-        let with = |group: &&mut Vec<usize>| moves_alike(problem, state, &census.answers[group[0]]);
-        match groups.iter_mut().find(with) {
+        match groups
+            .iter_mut()
+            .find(|group| moves_alike(problem, state, &census.answers[group[0]]))
+        {
             Some(group) => group.push(number),
             None => groups.push(vec![number]),
         }
@@ -66,8 +68,11 @@ pub fn families(problem: &InterfaceProblem, census: &Census) -> Vec<Family> {
 
 fn moves_alike(problem: &InterfaceProblem, a: &Consistent, b: &Consistent) -> bool {
     let near = |a: f64, b: f64| a == b || (a - b).abs() <= SAME * problem.length;
-    let mut pairs = a.answer.nodes.iter().zip(&b.answer.nodes);
-    pairs.all(|(a, b)| near(a.gap, b.gap) && near(a.slip, b.slip))
+    a.answer
+        .nodes
+        .iter()
+        .zip(&b.answer.nodes)
+        .all(|(a, b)| near(a.gap, b.gap) && near(a.slip, b.slip))
 }
 
 /// How a node's force can vary.
@@ -101,14 +106,19 @@ impl<'a> ForceFamily<'a> {
         if relation.stiffness.is_infinite() {
             return None;
         }
-        let all = states.iter().flat_map(|state| &state.answer.nodes);
-        let unit = all.fold(problem.force, |m, n| m.max(n.f_n.abs()).max(n.f_t.abs()));
-        let mean = |place: usize| {
-            let nodes = states.iter().map(|state| &state.answer.nodes[place]);
-            let sum = nodes.fold([0.0; 2], |s, n| [s[0] + n.f_n, s[1] + n.f_t]);
-            sum.map(|x| x / states.len() as f64 / unit)
-        };
-        let force: Vec<[f64; 2]> = (0..problem.nodes.len()).map(mean).collect();
+        let unit = states
+            .iter()
+            .flat_map(|state| &state.answer.nodes)
+            .fold(problem.force, |m, n| m.max(n.f_n.abs()).max(n.f_t.abs()));
+        let force: Vec<[f64; 2]> = (0..problem.nodes.len())
+            .map(|place| {
+                let sum = states
+                    .iter()
+                    .map(|state| &state.answer.nodes[place])
+                    .fold([0.0; 2], |s, n| [s[0] + n.f_n, s[1] + n.f_t]);
+                sum.map(|x| x / states.len() as f64 / unit)
+            })
+            .collect();
         let (mut ways, mut columns) = (Vec::new(), Vec::new());
         for (place, node) in problem.nodes.iter().enumerate() {
             let at = &states[0].answer.nodes[place];
@@ -136,11 +146,13 @@ impl<'a> ForceFamily<'a> {
         // The effect on motions: (I + R / k) of each column.
         let count = relation.count();
         let entry = |i: usize, column: &[(usize, f64)]| -> f64 {
-            let of = |&(j, times): &(usize, f64)| {
-                let one = if i == j { 1.0 } else { 0.0 };
-                times * (one + relation.response[j * count + i] / relation.stiffness)
-            };
-            column.iter().map(of).sum()
+            column
+                .iter()
+                .map(|&(j, times)| {
+                    let one = if i == j { 1.0 } else { 0.0 };
+                    times * (one + relation.response[j * count + i] / relation.stiffness)
+                })
+                .sum()
         };
         if columns.is_empty() {
             return None;
@@ -221,16 +233,20 @@ impl<'a> ForceFamily<'a> {
                 sign * if far { f64::INFINITY } else { most } * self.unit
             };
             let [low, high] = [end(-1.0), end(1.0)];
-            match high - low > SAME_FORCE * self.unit {
-                true => [low, high],
-                false => [(low + high) / 2.0; 2],
+            if high - low > SAME_FORCE * self.unit {
+                [low, high]
+            } else {
+                [(low + high) / 2.0; 2]
             }
         };
         let all = asked
             .iter()
             .map(|&(form, place)| (place, [range(form), range(form + 1)]));
-        let differs = |(_, ranges): &Range| ranges.iter().any(|[low, high]| low < high);
-        Some((dimension, all.filter(differs).collect()))
+        Some((
+            dimension,
+            all.filter(|(_, ranges)| ranges.iter().any(|[low, high]| low < high))
+                .collect(),
+        ))
     }
 
     /// F_n and F_t of a node: one coefficient per direction, and the constant.
@@ -238,8 +254,10 @@ impl<'a> ForceFamily<'a> {
         let size = self.directions.ncols();
         let [f_n, f_t] = self.force[place];
         let form = |row: Option<(usize, f64)>, constant: f64| -> Vec<f64> {
-            let of = |k| row.map_or(0.0, |(row, times)| times * self.directions[(row, k)]);
-            (0..size).map(of).chain([constant]).collect()
+            (0..size)
+                .map(|k| row.map_or(0.0, |(row, times)| times * self.directions[(row, k)]))
+                .chain([constant])
+                .collect()
         };
         match way {
             FamilyDirection::Normal(row) => [form(Some((row, 1.0)), f_n), form(None, f_t)],

@@ -120,8 +120,11 @@ impl BoundedForms {
     fn evaluate(&mut self) {
         let width = self.width();
         for (row, line) in self.rows.iter().zip(self.table.chunks_exact(width)) {
-            let terms = line.iter().zip(&self.columns);
-            let sum: f64 = terms.map(|(x, &c)| x * self.values[c]).sum();
+            let sum: f64 = line
+                .iter()
+                .zip(&self.columns)
+                .map(|(x, &c)| x * self.values[c])
+                .sum();
             self.values[*row] = sum + line[self.count];
         }
     }

@@ -54,8 +54,9 @@ impl LineSearch {
             return to.to_vec();
         }
         let mix = |a: [f64; 2], b: [f64; 2]| [0, 1].map(|k| a[k] + part * (b[k] - a[k]));
-        let pairs = self.at.iter().zip(to);
-        pairs
+        self.at
+            .iter()
+            .zip(to)
             .map(|(from, to)| NodeIncrement {
                 force: mix(from.force, to.force),
                 motion: mix(from.motion, to.motion),
@@ -67,9 +68,10 @@ impl LineSearch {
 /// The squared natural map of a contact (force²), with the stiffness `spring` that relates lengths to forces.
 pub fn natural_map([f_n, f_t, gap, slip]: [f64; 4], friction: &Friction, spring: f64) -> f64 {
     let pressure = (f_n - spring * gap).max(0.0);
-    let limit = match pressure > 0.0 {
-        true => friction.coefficient() * pressure + friction.cohesion,
-        false => 0.0,
+    let limit = if pressure > 0.0 {
+        friction.coefficient() * pressure + friction.cohesion
+    } else {
+        0.0
     };
     let normal = f_n - pressure;
     let tangential = f_t - (f_t + spring * slip).clamp(-limit, limit);

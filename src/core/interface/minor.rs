@@ -173,9 +173,13 @@ pub fn one_at_a_time(
     before: &[ContactState],
     records: &mut [ContactRecord],
 ) {
-    let all = nodes.iter_mut().zip(before).zip(records);
-    let changing = all.filter(|(_, record)| record.decision.changes());
-    for ((node, before), record) in changing.skip(1) {
+    for ((node, before), record) in nodes
+        .iter_mut()
+        .zip(before)
+        .zip(records)
+        .filter(|(_, record)| record.decision.changes())
+        .skip(1)
+    {
         *node = ContactState {
             travel: node.travel,
             forced: node.forced,
@@ -194,9 +198,10 @@ fn sense(
     settings: &Settings,
 ) -> f64 {
     if before.mode == Mode::Free {
-        match before.kept {
-            true => before.slipped(settings) + tangential,
-            false => tangential,
+        if before.kept {
+            before.slipped(settings) + tangential
+        } else {
+            tangential
         }
     } else {
         record.slip

@@ -112,8 +112,9 @@ impl MinorHistory {
         let width = nodes.len().max(1);
         let same = |then: usize| {
             let then = &self.entries[then * width..(then + 1) * width];
-            let mut pairs = then.iter().zip(nodes);
-            pairs.all(|(then, node)| then.repeats(&Input::from_node(node), force, ratio))
+            then.iter()
+                .zip(nodes)
+                .all(|(then, node)| then.repeats(&Input::from_node(node), force, ratio))
         };
         let found = cycle::closed(self.len(width), 1, same, |_| true)?;
         let round = || self.entries[found.start * width..].chunks_exact(width);

@@ -203,8 +203,11 @@ impl Answer {
 
     /// The node whose condition is closest to violation, or violated most, with that condition. `None` without nodes.
     pub fn worst(&self) -> Option<(usize, Margin)> {
-        let margins = self.nodes.iter().map(|n| n.worst).enumerate();
-        margins.min_by(|a, b| a.1.relative.total_cmp(&b.1.relative))
+        self.nodes
+            .iter()
+            .map(|n| n.worst)
+            .enumerate()
+            .min_by(|a, b| a.1.relative.total_cmp(&b.1.relative))
     }
 
     /// Whether every node satisfies its conditions, up to a relative tolerance.
@@ -271,8 +274,8 @@ impl InterfaceProblem {
         dense.solve(&mut answers).ok()?;
         let through = |i: usize, column: usize| -> f64 {
             let z = answers.iter().skip(column * gone.len());
-            let shares = gone.iter().zip(z);
-            shares
+            gone.iter()
+                .zip(z)
                 .map(|(&j, z)| relation.response[j * count + i] * z)
                 .sum()
         };

@@ -68,13 +68,12 @@ impl InterfaceResponse {
         std::array::from_fn(|k| {
             let row = 2 * slave + k % 2;
             let force = self.response.iter().skip(row).step_by(self.count());
-            match k < 2 {
-                true => force.copied().collect(),
-                false => {
-                    let mut motion: Vec<f64> = force.map(|force| force / self.stiffness).collect();
-                    motion[row] += 1.0;
-                    motion
-                }
+            if k < 2 {
+                force.copied().collect()
+            } else {
+                let mut motion: Vec<f64> = force.map(|force| force / self.stiffness).collect();
+                motion[row] += 1.0;
+                motion
             }
         })
     }

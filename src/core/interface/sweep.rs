@@ -337,10 +337,7 @@ impl LocalLaw<2> for Sweep<2> {
         let [e_n, e_t] = [self.motions[2 * place], self.motions[2 * place + 1]];
         let &[[nn, _], [_, tt]] = self.compliance.own(place);
         // A motion without compliance has no force that stops it.
-        let by = |motion: f64, own: f64| match own > 0.0 {
-            true => motion / own,
-            false => 0.0,
-        };
+        let by = |motion: f64, own: f64| if own > 0.0 { motion / own } else { 0.0 };
         let normal = match node.presses {
             true if nn <= 0.0 && e_n < 0.0 => f64::INFINITY,
             true => f_n - (f_n - by(e_n, nn)).max(0.0),
@@ -426,13 +423,15 @@ impl LocalLaw<3> for Sweep<3> {
         let (nn, tt) = (own[0][0], 0.5 * (own[1][1] + own[2][2]));
         // A motion without compliance has no force that stops it.
         let by = |motion: f64, own: f64| if own > 0.0 { motion / own } else { 0.0 };
-        let normal = match nn <= 0.0 && motion[0] < 0.0 {
-            true => f64::INFINITY,
-            false => force[0] - (force[0] - by(motion[0], nn)).max(0.0),
+        let normal = if nn <= 0.0 && motion[0] < 0.0 {
+            f64::INFINITY
+        } else {
+            force[0] - (force[0] - by(motion[0], nn)).max(0.0)
         };
-        let limit = match force[0] > 0.0 {
-            true => node.limit(force[0]),
-            false => 0.0,
+        let limit = if force[0] > 0.0 {
+            node.limit(force[0])
+        } else {
+            0.0
         };
         let trial = [1, 2].map(|k| force[k] - by(motion[k], tt));
         let size = trial[0].hypot(trial[1]);

@@ -151,8 +151,9 @@ fn of_round(
 ) -> Option<TMaxIteration> {
     let round = &trail[trail.len() - 1 - period..];
     let (first, last) = (&round[0], &round[period]);
-    let slides = |s: &usize| round[..period].iter().any(|n| n[*s].mode == Mode::Sliding);
-    let places: Vec<usize> = (0..first.len()).filter(slides).collect();
+    let places: Vec<usize> = (0..first.len())
+        .filter(|s| round[..period].iter().any(|n| n[*s].mode == Mode::Sliding))
+        .collect();
     let map = map(trials, &round[..period], &places)?;
     let size = places.len();
     let at =
@@ -211,8 +212,10 @@ fn map(trials: &mut Trials<'_>, round: &[Vec<ContactState>], places: &[usize]) -
             let node = &trials.problem().nodes[to];
             let f_n = nodes[to].f_n + given[to].force[0];
             let sign = next_sign(&nodes[to], nodes[to].f_t + given[to].force[1]);
-            let sliding = places.iter().enumerate();
-            let sliding = sliding.filter(|(_, from)| nodes[**from].mode == Mode::Sliding);
+            let sliding = places
+                .iter()
+                .enumerate()
+                .filter(|(_, from)| nodes[**from].mode == Mode::Sliding);
             for (j, &from) in sliding {
                 once[j * size + i] =
                     sign * f_n.signum() * node.friction.coefficient() * of_f_n[2 * from + 1];
@@ -245,8 +248,8 @@ fn product(a: &[f64], b: &[f64], size: usize) -> Vec<f64> {
 
 /// Largest column sum of magnitudes.
 fn norm(a: &[f64], size: usize) -> f64 {
-    let columns = a.chunks_exact(size.max(1));
-    columns.fold(0.0, |m, c| c.iter().map(|x| x.abs()).sum::<f64>().max(m))
+    a.chunks_exact(size.max(1))
+        .fold(0.0, |m, c| c.iter().map(|x| x.abs()).sum::<f64>().max(m))
 }
 
 /// The spectral radius: the limit of ‖Aᵐ‖^(1/m), m = 2^[`SQUARINGS`].

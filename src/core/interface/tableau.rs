@@ -225,19 +225,25 @@ impl Tableau {
         }
         let kept: Vec<usize> = (0..rows).filter(|&row| single[row].is_none()).collect();
         let basic = |place: usize| &self.table[self.basis[place] * rows..][..rows];
-        let matrix = own
+        let matrix: Vec<f64> = own
             .iter()
-            .flat_map(|&place| kept.iter().map(move |&row| basic(place)[row]));
-        let matrix: Vec<f64> = matrix.collect();
+            .flat_map(|&place| kept.iter().map(move |&row| basic(place)[row]))
+            .collect();
         let entries = |(row, place): (usize, &usize)| {
-            let others = own.iter().enumerate();
-            let entries = others.map(|(k, &other)| (k, basic(other)[row]));
-            let entries: Vec<(usize, f64)> = entries.filter(|(_, x)| *x != 0.0).collect();
+            let entries: Vec<(usize, f64)> = own
+                .iter()
+                .enumerate()
+                .map(|(k, &other)| (k, basic(other)[row]))
+                .filter(|(_, x)| *x != 0.0)
+                .collect();
             (row, *place, entries)
         };
-        let following = single.iter().enumerate();
-        let following = following.filter_map(|(row, place)| Some((row, place.as_ref()?)));
-        let following: Vec<_> = following.map(entries).collect();
+        let following: Vec<_> = single
+            .iter()
+            .enumerate()
+            .filter_map(|(row, place)| Some((row, place.as_ref()?)))
+            .map(entries)
+            .collect();
         let columns = self.table.len() / rows.max(1);
         let others: Vec<usize> = (0..columns)
             .filter(|&column| self.row_of.get(column).is_none_or(Option::is_none))
@@ -248,10 +254,10 @@ impl Tableau {
             return None;
         }
         let table = &self.table;
-        let solved = others
+        let mut solved: Vec<f64> = others
             .iter()
-            .flat_map(|&column| kept.iter().map(move |&row| table[column * rows + row]));
-        let mut solved: Vec<f64> = solved.collect();
+            .flat_map(|&column| kept.iter().map(move |&row| table[column * rows + row]))
+            .collect();
         dense.solve(&mut solved).ok()?;
         let mut new = vec![0.0; rows];
         for (k, &column) in others.iter().enumerate() {
@@ -368,26 +374,24 @@ impl Tableau {
     /// then lexicographically.
     fn bounding(&self, entering: usize) -> Option<usize> {
         let column = &self.table[entering * self.rows..(entering + 1) * self.rows];
-        let tiny = match self.shifted {
-            true => TINY_SHIFTED,
-            false => TINY,
-        };
+        let tiny = if self.shifted { TINY_SHIFTED } else { TINY };
         let tiny = tiny * max_abs(column);
-        let rows = (0..self.rows).filter(|&row| column[row] > tiny && !self.is_loose(row));
-        rows.reduce(|best, row| {
-            let ratio = |row: usize| self.value(row) / column[row];
-            let tied = (ratio(row) - ratio(best)).abs() <= TIE;
-            let cover = self.variables();
-            if tied && self.basis[best] == cover {
-                return best;
-            }
-            let first = tied && self.basis[row] == cover;
-            if first || self.comes_before(row, best, |row| column[row]) {
-                row
-            } else {
-                best
-            }
-        })
+        (0..self.rows)
+            .filter(|&row| column[row] > tiny && !self.is_loose(row))
+            .reduce(|best, row| {
+                let ratio = |row: usize| self.value(row) / column[row];
+                let tied = (ratio(row) - ratio(best)).abs() <= TIE;
+                let cover = self.variables();
+                if tied && self.basis[best] == cover {
+                    return best;
+                }
+                let first = tied && self.basis[row] == cover;
+                if first || self.comes_before(row, best, |row| column[row]) {
+                    row
+                } else {
+                    best
+                }
+            })
     }
 
     /// Whether a row is lexicographically less than another, each divided by its divisor.

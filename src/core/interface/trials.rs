@@ -67,8 +67,10 @@ impl<'a> Trials<'a> {
         };
         let mut settled = true;
         let before = nodes.to_vec();
-        let all = nodes.iter_mut().zip(&problem.nodes).zip(given);
-        let mut records: Vec<ContactRecord> = all
+        let mut records: Vec<ContactRecord> = nodes
+            .iter_mut()
+            .zip(&problem.nodes)
+            .zip(given)
             .map(|((state, node), given)| {
                 let (record, still) = minor::check(
                     state,
@@ -127,10 +129,13 @@ impl<'a> Trials<'a> {
             return None;
         }
         let nodes = self.problem.nodes.iter().enumerate();
-        let given = |(s, node): (usize, &ProblemNode)| {
-            let [force, motion] = relation.answer(&self.z, s, node.prescribed);
-            NodeIncrement { force, motion }
-        };
-        Some(nodes.map(given).collect())
+        Some(
+            nodes
+                .map(|(s, node)| {
+                    let [force, motion] = relation.answer(&self.z, s, node.prescribed);
+                    NodeIncrement { force, motion }
+                })
+                .collect(),
+        )
     }
 }

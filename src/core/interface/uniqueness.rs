@@ -91,12 +91,13 @@ pub fn uniqueness(problem: &InterfaceProblem) -> Uniqueness {
         Err(why) => return Uniqueness::Not(semidefinite(problem).unwrap_or(why)),
     };
     let spare = compliance.spare();
-    match spare >= 1.0 {
-        true => Uniqueness::Unique {
+    if spare >= 1.0 {
+        Uniqueness::Unique {
             spare,
             carried: compliance.carried,
-        },
-        false => Uniqueness::Unproven { spare },
+        }
+    } else {
+        Uniqueness::Unproven { spare }
     }
 }
 
@@ -187,8 +188,11 @@ impl CompliancePart {
             };
             -inverse[j * count + i] - spring
         };
-        let pairs_of = kept.iter().flat_map(|&i| kept.iter().map(move |&j| (i, j)));
-        let mut rows: Vec<f64> = pairs_of.map(|(i, j)| entry(i, j)).collect();
+        let mut rows: Vec<f64> = kept
+            .iter()
+            .flat_map(|&i| kept.iter().map(move |&j| (i, j)))
+            .map(|(i, j)| entry(i, j))
+            .collect();
         let mean = (0..size).map(|k| rows[k * size + k]).sum::<f64>() / size.max(1) as f64;
         if mean <= 0.0 && size > 0 {
             return Err(Inapplicable::Indefinite);
@@ -203,9 +207,10 @@ impl CompliancePart {
             pairs,
             carried,
         };
-        match compliance.is_definite(&compliance.matrix) {
-            true => Ok(compliance),
-            false => Err(Inapplicable::Indefinite),
+        if compliance.is_definite(&compliance.matrix) {
+            Ok(compliance)
+        } else {
+            Err(Inapplicable::Indefinite)
         }
     }
 
@@ -254,12 +259,16 @@ impl CompliancePart {
         for _ in 0..ROUNDS {
             let (_, x) = worst(&alphas);
             let wx = times(&self.matrix, self.size, &x);
-            let scale = |(&(n, t, _), alpha): (&(usize, usize, f64), &f64)| {
-                let (a, b) = (x[n].abs() / alpha.sqrt(), wx[t].abs() * alpha.sqrt());
-                let lean = ((a + 1e-3) / (b + 1e-3)).clamp(0.5, 2.0);
-                alpha * lean.powf(0.5)
-            };
-            let turned: Vec<f64> = self.pairs.iter().zip(&alphas).map(scale).collect();
+            let turned: Vec<f64> = self
+                .pairs
+                .iter()
+                .zip(&alphas)
+                .map(|(&(n, t, _), alpha)| {
+                    let (a, b) = (x[n].abs() / alpha.sqrt(), wx[t].abs() * alpha.sqrt());
+                    let lean = ((a + 1e-3) / (b + 1e-3)).clamp(0.5, 2.0);
+                    alpha * lean.powf(0.5)
+                })
+                .collect();
             let now = worst(&turned).0;
             if now >= least {
                 break;
@@ -343,8 +352,10 @@ impl CompliancePart {
             }
             for (j, other) in (k + 1..size).zip(rest.chunks_exact_mut(size)) {
                 let factor = column[j] / pivot;
-                let own = other[j..].iter_mut().zip(&column[j..]);
-                own.for_each(|(x, c)| *x -= factor * c);
+                other[j..]
+                    .iter_mut()
+                    .zip(&column[j..])
+                    .for_each(|(x, c)| *x -= factor * c);
             }
         }
         true

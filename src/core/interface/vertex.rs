@@ -93,8 +93,10 @@ fn subtract(from: &mut [f64], times: f64, what: &[f64]) {
 
 /// [`vertex`] for a proposal of a search: mode of every node with F_n, F_t, gap and slip.
 pub fn vertices(problem: &InterfaceProblem, nodes: &mut [(AssumedMode, [f64; 4])]) {
-    let of = |&(does, [f_n, f_t, ..]): &(AssumedMode, [f64; 4])| (does, [f_n, f_t]);
-    let mut held: Vec<NodeForce> = nodes.iter().map(of).collect();
+    let mut held: Vec<NodeForce> = nodes
+        .iter()
+        .map(|&(does, [f_n, f_t, ..])| (does, [f_n, f_t]))
+        .collect();
     vertex(problem, &mut held);
     for (node, (does, [f_n, f_t])) in nodes.iter_mut().zip(held) {
         node.0 = does;
@@ -242,8 +244,11 @@ pub fn motionless(problem: &InterfaceProblem, nodes: &[NodeForce]) -> Vec<Vec<f6
             let mut factors = vec![0.0; size];
             factors[order[dependent]] = 1.0;
             for k in (0..rank).rev() {
-                let later = order[k + 1..rank].iter().chain([&order[dependent]]);
-                let sum: f64 = later.map(|&c| columns[c][rows[k]] * factors[c]).sum();
+                let sum: f64 = order[k + 1..rank]
+                    .iter()
+                    .chain([&order[dependent]])
+                    .map(|&c| columns[c][rows[k]] * factors[c])
+                    .sum();
                 factors[order[k]] = -sum / columns[order[k]][rows[k]];
             }
             let mut along = vec![0.0; count];

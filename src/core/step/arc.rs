@@ -20,8 +20,7 @@ use crate::step::iterate::Iterate;
 use crate::step::jump::AcceptanceNotes;
 use crate::step::pace::RATIO;
 use crate::{
-    ContactState, Failure, Finding, Mode, Model, Norms, Outcome, Pace, Singular, State, Stepper,
-    Verdict,
+    Failure, Finding, Mode, Model, Norms, Outcome, Pace, Singular, State, Stepper, Verdict,
 };
 use std::sync::Arc;
 
@@ -212,9 +211,11 @@ impl Iterate {
                 part,
             })
         });
-        let all = of_load.into_iter().chain(bounds);
-        let open = all.filter(|goal| goal.aim != way.aim);
-        open.min_by(|a, b| a.part.total_cmp(&b.part))
+        of_load
+            .into_iter()
+            .chain(bounds)
+            .filter(|goal| goal.aim != way.aim)
+            .min_by(|a, b| a.part.total_cmp(&b.part))
     }
 
     /// Updates the arc data with an increment that is about to be accepted: its length, and the size of the next. Returns whether
@@ -237,8 +238,7 @@ impl Iterate {
             way.length += state.nodes[contact].slip - state.nodes[contact].slip.abs();
         }
         let bounded = |aim: ArcConstraint| {
-            let mut bounds = model.arc.bounds.iter();
-            bounds.any(
+            model.arc.bounds.iter().any(
                 |bound| matches!(aim, ArcConstraint::Dof { dof, to } if (dof, to) == (bound.dof, bound.at)),
             )
         };
@@ -263,11 +263,16 @@ impl Iterate {
                 way.ahead = (corner - state.load_factor).signum();
             }
         }
-        let slip = |node: &ContactState| match node.mode {
-            Mode::Sliding => node.slip,
-            _ => 0.0,
-        };
-        way.slips = Arc::new(state.nodes.iter().map(slip).collect());
+        way.slips = Arc::new(
+            state
+                .nodes
+                .iter()
+                .map(|node| match node.mode {
+                    Mode::Sliding => node.slip,
+                    _ => 0.0,
+                })
+                .collect(),
+        );
         (way.last, way.known, way.turned) = (Arc::new(last), false, false);
         ends
     }
@@ -287,8 +292,11 @@ impl State {
         if behind || self.turned_back() || way.turned || way.last.is_empty() {
             return behind || self.turned_back();
         }
-        let moved = state.u.iter().zip(state.start.u.iter());
-        let moved = moved.map(|(u, start)| u - start);
+        let moved = state
+            .u
+            .iter()
+            .zip(state.start.u.iter())
+            .map(|(u, start)| u - start);
         let load = state.load_factor - state.start.load_factor;
         goes_back(moved, &way.last) && load * way.last_load <= 0.0
     }

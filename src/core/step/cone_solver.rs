@@ -81,9 +81,10 @@ impl ConeSolver {
             foot: self.model.nodes[self.model.contacts[slave].node].at,
             ..ContactRecord::from_modes(node.mode, next, node)
         };
-        record.decision.rule = match error <= SETTLED {
-            true => Rule::Settled,
-            false => Rule::Sweeps,
+        record.decision.rule = if error <= SETTLED {
+            Rule::Settled
+        } else {
+            Rule::Sweeps
         };
         record.decision.tests[0] = Some(Test {
             tested: TestedQuantity::Error,
@@ -134,8 +135,11 @@ impl Solver for ConeSolver {
         let error = self.error;
         let count = self.model.contacts.len();
         let nodes: Vec<_> = (0..count).map(|slave| self.record(slave, error)).collect();
-        let changes = |record: &ContactRecord| record.decision.next != record.decision.before;
-        let outcome = match error <= SETTLED && !nodes.iter().any(changes) {
+        let outcome = match error <= SETTLED
+            && !nodes
+                .iter()
+                .any(|record| record.decision.next != record.decision.before)
+        {
             true => Outcome::accepted(norms(error), true),
             false if self.state.next.minor >= MOST => Outcome::Failed(Failure::Reported {
                 reason: format!(
@@ -154,8 +158,11 @@ impl Solver for ConeSolver {
             outcome,
             ..Event::nothing_yet(&self.model)
         };
-        let motions = self.sweep.motions().chunks_exact(3);
-        let moved = motions.flat_map(|motion| [motion[1], motion[2], motion[0]]);
+        let moved = self
+            .sweep
+            .motions()
+            .chunks_exact(3)
+            .flat_map(|motion| [motion[1], motion[2], motion[0]]);
         // The floor does not move.
         let all = moved.chain(std::iter::repeat(0.0));
         self.state.u = Arc::new(all.take(self.model.dofs.len()).collect());
@@ -239,9 +246,12 @@ mod tests {
         let mut model = Model::from_contacts("A block", nodes, vec![floor], contacts.collect());
         let size = 3 * count;
         // Symmetric and diagonally dominant.
-        let entry = |i: usize, j: usize| match i == j {
-            true => 2.0 + 0.1 * (i % 3) as f64,
-            false => 0.8 * ((i * j + i + j) as f64).sin() / size as f64,
+        let entry = |i: usize, j: usize| {
+            if i == j {
+                2.0 + 0.1 * (i % 3) as f64
+            } else {
+                0.8 * ((i * j + i + j) as f64).sin() / size as f64
+            }
         };
         let all = (0..size).flat_map(|i| (0..size).map(move |j| (i, j)));
         let free = (0..size).map(|i| match i % 3 {

@@ -115,8 +115,12 @@ impl Event {
     pub(super) fn changing(&self, force: f64) -> Vec<usize> {
         let moves =
             |r: &ContactRecord| r.decision.changes() || (r.t_max - r.t_max_used).abs() > force;
-        let records = self.nodes.iter().enumerate();
-        records.filter(|(_, r)| moves(r)).map(|(s, _)| s).collect()
+        self.nodes
+            .iter()
+            .enumerate()
+            .filter(|(_, r)| moves(r))
+            .map(|(s, _)| s)
+            .collect()
     }
 }
 

@@ -47,8 +47,12 @@ impl Iterate {
         let bounded = self.go_along(leg);
         self.settle_contacts();
         let motion = self.state.recovery.motion.take();
-        let found = self.state.recovery.fallback.map(|fallback| fallback.by);
-        let found = found.filter(|by| *by != Fallback::Back);
+        let found = self
+            .state
+            .recovery
+            .fallback
+            .map(|fallback| fallback.by)
+            .filter(|by| *by != Fallback::Back);
         let left_range = range_left(&*self.source, &self.state);
         let start = Arc::make_mut(&mut self.state.start);
         start.load_factor = self.state.load_factor;
@@ -123,23 +127,21 @@ impl Iterate {
         let taken_here = self.drop_factors();
         let next = &mut self.state.next;
         (next.increment, next.attempt) = (next.increment + 1, 1);
-        let whole = || {
-            let (start, increment) = (&self.state.start, self.state.controls.increment);
-            SubIncrement::whole(&self.model, start.place(), increment)
-        };
         let helped = self
             .state
             .recovery
             .fallback
             .take()
             .map(|fallback| fallback.by);
-        let repeated = |by: &Fallback| matches!(by, Fallback::Deeper | Fallback::Release);
-        if let Some(by) = helped.filter(repeated) {
+        if let Some(by) = helped.filter(|by| matches!(by, Fallback::Deeper | Fallback::Release)) {
             self.state.record.searched.adopted = Some(by);
         }
         self.state.record.searched.origin = None;
         let rest = self.state.sub_increment.next();
-        self.state.sub_increment = rest.unwrap_or_else(whole);
+        self.state.sub_increment = rest.unwrap_or_else(|| {
+            let (start, increment) = (&self.state.start, self.state.controls.increment);
+            SubIncrement::whole(&self.model, start.place(), increment)
+        });
         if rest.is_none() {
             self.state.recovery.cuts.clear();
         }

@@ -24,10 +24,9 @@ impl State {
         let tied = |slave: &usize| model.contacts.get(*slave).is_some_and(|c| c.bond.is_tied());
         let refused = match intervention {
             Intervention::Force { slave, mode, .. } => tied(slave) && *mode != Mode::Fixed,
-            Intervention::Assume(starts) => {
-                let mut starts = starts.iter();
-                starts.any(|start| tied(&start.slave) && start.mode != Mode::Fixed)
-            }
+            Intervention::Assume(starts) => starts
+                .iter()
+                .any(|start| tied(&start.slave) && start.mode != Mode::Fixed),
             _ => false,
         };
         if refused {
@@ -174,8 +173,10 @@ impl State {
     }
 
     fn set_parameter(&mut self, name: &str, value: &Value) -> Result<(), Refusal> {
-        let outside = self.outside.as_mut();
-        let outside = outside.ok_or_else(|| Refusal::NoParameter(name.to_owned()))?;
+        let outside = self
+            .outside
+            .as_mut()
+            .ok_or_else(|| Refusal::NoParameter(name.to_owned()))?;
         outside.set.retain(|(known, _)| known != name);
         outside.set.push((name.to_owned(), value.clone()));
         Ok(())

@@ -25,8 +25,9 @@ pub struct ReferenceSizes {
 
 /// The largest contact force in a state.
 pub fn largest_force(nodes: &[ContactRecord]) -> f64 {
-    let forces = nodes.iter().flat_map(|node| [node.f_n, node.f_t]);
-    forces
+    nodes
+        .iter()
+        .flat_map(|node| [node.f_n, node.f_t])
         .filter(|f| f.is_finite())
         .fold(0.0, |most: f64, f| most.max(f.abs()))
 }
@@ -39,8 +40,10 @@ impl ReferenceSizes {
             .as_ref()
             .map_or(0.0, |outside| outside.largest_force);
         let count = event.frames.first().map_or(2, |_| 3);
-        let moved = state.u.chunks(count);
-        let moved = moved.map(|u| u.iter().map(|x| x * x).sum::<f64>().sqrt());
+        let moved = state
+            .u
+            .chunks(count)
+            .map(|u| u.iter().map(|x| x * x).sum::<f64>().sqrt());
         ReferenceSizes {
             // The scale is NaN if it was not reported.
             force: known.max(ROUND_OFF * event.before.scale),
@@ -52,8 +55,9 @@ impl ReferenceSizes {
 /// The law with the largest violation in an accepted state.
 pub fn broken(model: &Model, nodes: &[ContactRecord], sizes: &ReferenceSizes) -> Option<Finding> {
     let all = verdict(model, nodes, sizes);
-    let broken = all.broken().copied();
-    broken.max_by(|a, b| a.amount.total_cmp(&b.amount))
+    all.broken()
+        .copied()
+        .max_by(|a, b| a.amount.total_cmp(&b.amount))
 }
 
 /// The largest amount by which each law is violated in an accepted state.
@@ -84,8 +88,9 @@ pub fn verdict(model: &Model, nodes: &[ContactRecord], sizes: &ReferenceSizes) -
         })
     });
     let mut verdict = Verdict::default();
-    let known = found.filter(|found| !found.amount.is_nan());
-    known.for_each(|found| verdict.add(found));
+    found
+        .filter(|found| !found.amount.is_nan())
+        .for_each(|found| verdict.add(found));
     verdict
 }
 

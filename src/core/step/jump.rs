@@ -17,7 +17,6 @@
 use crate::model::Jumps;
 use crate::step::iterate::Iterate;
 use crate::step::pace::SuspectIncrement;
-use crate::step::recovery::fallback::FallbackState;
 use crate::step::watch::FAR;
 use crate::strategy;
 use crate::{
@@ -114,8 +113,14 @@ impl Stepper {
         if jumps == Jumps::Dynamic && smallest && trip.follows() {
             return None;
         }
-        let round = |route: FallbackState| !matches!(route.by, Fallback::Held | Fallback::Back);
-        if jumps != Jumps::Accept && self.now.state.recovery.fallback.is_some_and(round) {
+        if jumps != Jumps::Accept
+            && self
+                .now
+                .state
+                .recovery
+                .fallback
+                .is_some_and(|route| !matches!(route.by, Fallback::Held | Fallback::Back))
+        {
             self.now.state.next_major();
             return Some(self.fail(why.clone()));
         }

@@ -30,9 +30,10 @@ impl Stepper {
     pub(super) fn end_major(&mut self, settled: bool) -> Outcome {
         let held = self.now.hold(&self.event.nodes);
         let before = self.now.state.major.correction;
-        let asked = match self.now.keeps_factors() {
-            true => self.now.source.required_force(),
-            false => f64::INFINITY,
+        let asked = if self.now.keeps_factors() {
+            self.now.source.required_force()
+        } else {
+            f64::INFINITY
         };
         if self.now.source.recover() == SolveResult::Not {
             let singular = self.now.explain();

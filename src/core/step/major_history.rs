@@ -115,8 +115,10 @@ impl MajorHistory {
         let of = |k: usize| &self.entries[k * width..(k + 1) * width];
         let here = count.checked_sub(1)?;
         let all_within = |then: usize, limit: f64| {
-            let mut pairs = of(then).iter().zip(of(here));
-            pairs.all(|(a, b)| a.within(b, scales, limit))
+            of(then)
+                .iter()
+                .zip(of(here))
+                .all(|(a, b)| a.within(b, scales, limit))
         };
         let same = |then: usize| all_within(then, REPEATED);
         let round = cycle::closed(here, 2, same, |then| !all_within(then, DIFFERENT))?;

@@ -183,8 +183,8 @@ impl Iterate {
     pub(super) fn unsupported(&self, records: &[ContactRecord]) -> Option<Failure> {
         let first = self.state.attempt.search.first.as_deref()?;
         let force = self.ties().force;
-        let pressed = |record: &ContactRecord| record.f_n > force;
-        let loose = matches!(first, Failure::Singular(_)) && !records.iter().any(pressed);
+        let loose = matches!(first, Failure::Singular(_))
+            && !records.iter().any(|record| record.f_n > force);
         loose.then(|| first.clone())
     }
 
@@ -201,20 +201,24 @@ impl Iterate {
     /// Round-off of the slave nodes' positions relative to the scene's length. Far from the origin it sets the tolerance for ties
     /// between contact statuses.
     fn placed(&self) -> f64 {
-        let places = (0..self.state.nodes.len()).map(|contact| self.source.position(contact));
-        let reach = places.fold(0.0_f64, |most, [x, y]| most.max(x.abs()).max(y.abs()));
+        let reach = (0..self.state.nodes.len())
+            .map(|contact| self.source.position(contact))
+            .fold(0.0_f64, |most, [x, y]| most.max(x.abs()).max(y.abs()));
         ROUND_OFF * f64::EPSILON * reach / self.model.length
     }
 
     /// Force scale: with prescribed displacements, only the interface may carry forces before the first solve.
     pub(super) fn force_scale(&self) -> f64 {
-        let nodes = self.state.nodes.iter().enumerate();
-        nodes.fold(self.norms.scale, |scale, (contact, node)| {
-            let [d_n, d_t] = self.source.increment(contact).force;
-            scale
-                .max((node.f_n + d_n).abs())
-                .max((node.f_t + d_t).abs())
-        })
+        self.state
+            .nodes
+            .iter()
+            .enumerate()
+            .fold(self.norms.scale, |scale, (contact, node)| {
+                let [d_n, d_t] = self.source.increment(contact).force;
+                scale
+                    .max((node.f_n + d_n).abs())
+                    .max((node.f_t + d_t).abs())
+            })
     }
 
     /// Finds a cycle: whether the next minor iteration starts from the same state as an earlier one of this major iteration.
@@ -242,13 +246,12 @@ impl Iterate {
         let patterns = || problem.nodes.iter().zip(&found.modes);
         let went_round = (1..=period).all(|back| {
             let inputs = history.before(count, back);
-            let as_found = |inputs: &[_]| {
+            inputs.is_some_and(|inputs| {
                 patterns().all(|(node, modes)| {
                     let input: &crate::interface::minor_history::Input = &inputs[node.slave];
                     input.mode == modes[phase(back)]
                 })
-            };
-            inputs.is_some_and(as_found)
+            })
         });
         if found.fate != TMaxLimit::Cycles || !went_round {
             return None;
@@ -257,8 +260,9 @@ impl Iterate {
         let takes_part = |place: usize, modes: &[Mode]| {
             modes.iter().any(|mode| *mode != modes[0]) || found.places.contains(&place)
         };
-        let members = patterns().enumerate();
-        let members = members.filter(|(place, (_, modes))| takes_part(*place, modes));
+        let members = patterns()
+            .enumerate()
+            .filter(|(place, (_, modes))| takes_part(*place, modes));
         Some(Cycle {
             start: self.state.next.minor + 1 - found.period,
             period: found.period,

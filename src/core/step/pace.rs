@@ -99,9 +99,10 @@ impl Pace {
 
     /// Computes the expected motions over a span of the load factor.
     pub(super) fn expected(&self, model: &Model, span: [f64; 2]) -> ExpectedMotion {
-        let before = match self.fastest > 0.0 {
-            true => parallel(model, self.span, span),
-            false => None,
+        let before = if self.fastest > 0.0 {
+            parallel(model, self.span, span)
+        } else {
+            None
         };
         ExpectedMotion {
             tangent: self.predicted,
@@ -141,8 +142,10 @@ impl ExpectedMotion {
     pub(super) fn is_exceeded(&self, motion: f64, cuts: bool) -> bool {
         let expected = if cuts { self.least() } else { self.tangent };
         let faster = FASTER * self.ratio / RATIO;
-        let off = |[_, last]: [f64; 2]| !self.holds && motion > faster * last;
-        motion > self.ratio * expected || self.before.is_some_and(off)
+        motion > self.ratio * expected
+            || self
+                .before
+                .is_some_and(|[_, last]| !self.holds && motion > faster * last)
     }
 }
 

@@ -2,8 +2,7 @@
 
 use crate::contact::table1::t_max;
 use crate::interface::method::{NoProposal, Proposal, SearchInput};
-use crate::interface::minor_history::Input;
-use crate::model::{Contact, Geometry};
+use crate::model::Geometry;
 use crate::step::iterate::Iterate;
 use crate::step::recovery::FROZEN;
 use crate::step::recovery::left_out::OmittedStep;
@@ -173,9 +172,13 @@ impl Stepper {
             }
         }
         if let Some((place, tested)) = proposal.bound {
-            let contacts = model.contacts.iter().enumerate();
-            let mut chosen = contacts.filter(|(_, slave)| !slave.bond.is_tied());
-            let contact = chosen.nth(place).map_or(place, |(contact, _)| contact);
+            let contact = model
+                .contacts
+                .iter()
+                .enumerate()
+                .filter(|(_, slave)| !slave.bond.is_tied())
+                .nth(place)
+                .map_or(place, |(contact, _)| contact);
             self.event.nodes[contact].decision.tests[1] = Some(Test {
                 tested,
                 value: 0.0,
@@ -206,13 +209,11 @@ impl Iterate {
     /// Modes and T_max of the contacts that are not tied, at the start of the current major iteration.
     fn brought(&self) -> Vec<AssumedMode> {
         let first = self.state.major.minor_history.first(self.state.nodes.len());
-        let of = |(input, slave): (&Input, &Contact)| {
-            (!slave.bond.is_tied()).then(|| AssumedMode::from_mode(input.mode, input.t_max))
-        };
         first
             .iter()
             .zip(&self.model.contacts)
-            .filter_map(of)
+            .filter(|(_, slave)| !slave.bond.is_tied())
+            .map(|(input, _)| AssumedMode::from_mode(input.mode, input.t_max))
             .collect()
     }
 

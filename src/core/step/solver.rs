@@ -298,14 +298,18 @@ impl Capabilities {
             }
             Intervention::Settings(_) => (self.settings, "settings of the two-level method"),
             Intervention::Parameter { name, value } => {
-                let known = self.parameters.iter().find(|known| known.name == *name);
-                let known = known.ok_or_else(|| Refusal::NoParameter(name.clone()))?;
+                let known = self
+                    .parameters
+                    .iter()
+                    .find(|known| known.name == *name)
+                    .ok_or_else(|| Refusal::NoParameter(name.clone()))?;
                 return known.check(value);
             }
         };
-        match offered {
-            true => Ok(()),
-            false => Err(Refusal::NotOffered(self.lacks(what))),
+        if offered {
+            Ok(())
+        } else {
+            Err(Refusal::NotOffered(self.lacks(what)))
         }
     }
 
@@ -392,13 +396,12 @@ impl Parameter {
             (Range::Choice(choices), Value::Text(text)) => choices.contains(text),
             _ => false,
         };
-        match takes {
-            true => Ok(()),
-            false => {
-                let (name, range) = (&self.name, &self.range);
-                let message = format!("{name} takes {range}, and {value} is none");
-                Err(Refusal::NotOffered(message))
-            }
+        if takes {
+            Ok(())
+        } else {
+            let (name, range) = (&self.name, &self.range);
+            let message = format!("{name} takes {range}, and {value} is none");
+            Err(Refusal::NotOffered(message))
         }
     }
 
@@ -406,8 +409,11 @@ impl Parameter {
     /// values: increment, friction (mu) and cohesion of all contacts.
     pub fn now(&self, model: &Model, state: &State) -> Value {
         let controls = &state.controls;
-        let contacts = controls.friction.first().zip(model.contacts.first());
-        let coulomb = contacts.filter(|(now, first)| **now != first.friction);
+        let coulomb = controls
+            .friction
+            .first()
+            .zip(model.contacts.first())
+            .filter(|(now, first)| **now != first.friction);
         let number = match (self.name.as_str(), coulomb) {
             ("increment", _) if controls.increment != model.increment => Some(controls.increment),
             ("friction", Some((now, _))) => Some(now.coefficient()),

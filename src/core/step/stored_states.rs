@@ -60,8 +60,11 @@ impl<T> StoredStates<T> {
 
     /// The place that an iteration reached from another after these changes; `None` if it was not done yet.
     pub fn follows(&self, from: u64, asked: &[Intervention]) -> Option<u64> {
-        let mut places = self.place(from)?.led_to.iter().copied();
-        places.find(|&place| self.from(place).is_some_and(|(_, before)| before == asked))
+        self.place(from)?
+            .led_to
+            .iter()
+            .copied()
+            .find(|&place| self.from(place).is_some_and(|(_, before)| before == asked))
     }
 
     /// Adds the place that an iteration reached from another after these changes, and returns its number.
@@ -90,9 +93,12 @@ impl<T> StoredStates<T> {
 
     /// The places without successors, except the start, in the order in which they were reached.
     pub fn ends(&self) -> impl Iterator<Item = u64> {
-        let numbered = self.all.iter().zip(0_u64..).skip(1);
-        let ends = numbered.filter(|(place, _)| place.led_to.is_empty());
-        ends.map(|(_, number)| number)
+        self.all
+            .iter()
+            .zip(0_u64..)
+            .skip(1)
+            .filter(|(place, _)| place.led_to.is_empty())
+            .map(|(_, number)| number)
     }
 
     /// The steps from the start to a place: iterations (`None`) and changes.

@@ -12,8 +12,8 @@
 use crate::model::{SlipCount, Sticking, TieRule};
 use crate::step::iterate::Iterate;
 use crate::{
-    ContactState, Failure, Finding, Forced, JudgedLaw, Norms, Outcome, PointDeformation, Source,
-    State, Stepper, Verdict,
+    Failure, Finding, Forced, JudgedLaw, Norms, Outcome, PointDeformation, Source, State, Stepper,
+    Verdict,
 };
 
 impl Stepper {
@@ -100,12 +100,14 @@ impl State {
     /// Whether states that violate a law are accepted, since the user asked for what causes them.
     fn only_marks(&self) -> bool {
         let settings = &self.controls.settings;
-        let held = |node: &ContactState| matches!(node.forced, Forced::Held(_));
         self.attempt.unsettled > 0
             || settings.slip == SlipCount::Major
             || settings.sticking == Sticking::Increments
             || settings.ties == TieRule::Printed
-            || self.nodes.iter().any(held)
+            || self
+                .nodes
+                .iter()
+                .any(|node| matches!(node.forced, Forced::Held(_)))
     }
 }
 
@@ -129,9 +131,11 @@ pub(super) fn worst_of(verdict: &Verdict) -> Option<Finding> {
         JudgedLaw::Touch => 0,
         _ => 1,
     };
-    let worse = |a: &&Finding, b: &&Finding| {
-        let by_rank = rank(a).cmp(&rank(b));
-        by_rank.then(a.amount.total_cmp(&b.amount))
-    };
-    verdict.broken().max_by(worse).copied()
+    verdict
+        .broken()
+        .max_by(|a, b| {
+            let by_rank = rank(a).cmp(&rank(b));
+            by_rank.then(a.amount.total_cmp(&b.amount))
+        })
+        .copied()
 }

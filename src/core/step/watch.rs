@@ -83,9 +83,10 @@ mod tests {
         for increment in 1..=100_u32 {
             let due = watch.is_due(4, 3.0);
             looks += u32::from(due);
-            let found = due.then_some(match increment <= 50 {
-                true => Stability::Stable,
-                false => Stability::Unstable { modes: 1 },
+            let found = due.then_some(if increment <= 50 {
+                Stability::Stable
+            } else {
+                Stability::Unstable { modes: 1 }
             });
             let loss = watch.loss(found);
             assert_eq!(loss.is_some(), increment == 60, "{increment}");

@@ -24,14 +24,17 @@ pub fn complete(line: &str, context: &Context) -> Vec<String> {
     let (before, word) = line.split_at(start.map_or(0, |at| at + 1));
     let candidates: Vec<String> = match before.split_whitespace().next() {
         None => ACTIONS.iter().map(|entry| entry.name.to_string()).collect(),
-        Some(name) => context.entry(name).map_or(Vec::new(), |entry| {
-            let mut all = entry.candidates(before, context);
-            all.extend(entry.paths(word));
-            if sets {
-                all.extend(parameter_lines(word, context));
-            }
-            all
-        }),
+        Some(name) => context
+            .entry(name)
+            .map(|entry| {
+                let mut all = entry.candidates(before, context);
+                all.extend(entry.paths(word));
+                if sets {
+                    all.extend(parameter_lines(word, context));
+                }
+                all
+            })
+            .unwrap_or_default(),
     };
     candidates
         .iter()
@@ -73,7 +76,8 @@ impl ActionEntry {
     /// Files and folders that complete a path.
     fn paths(&self, word: &str) -> Vec<String> {
         self.endings()
-            .map_or(Vec::new(), |endings| beginning_with(word, endings))
+            .map(|endings| beginning_with(word, endings))
+            .unwrap_or_default()
     }
 
     /// The possible next arguments after the text before.

@@ -592,14 +592,15 @@ pub(super) fn census_words<'a>(census: &Census, name: &impl Fn(usize) -> &'a str
         let margin = found
             .answer
             .worst()
-            .map_or(String::new(), |(place, margin)| {
+            .map(|(place, margin)| {
                 format!(
                     "; tightest condition: {} at {}, margin {}",
                     condition_words(margin.condition),
                     name(place),
                     sig4(margin.value)
                 )
-            });
+            })
+            .unwrap_or_default();
         let ties = match found.ties.as_slice() {
             [] => String::new(),
             ties => format!(" (tie: same as {})", ties.join(", ")),

@@ -56,10 +56,7 @@ pub fn describe(model: &Model, failure: &Failure) -> String {
             "no strategy of the ladder found a consistent state (first failure: {}; last: {}){}",
             describe(model, first),
             describe(model, last),
-            match scales {
-                true => "; without gaps, the problem scales with the load, so a smaller increment would not help",
-                false => "",
-            }
+            if *scales { "; without gaps, the problem scales with the load, so a smaller increment would not help" } else { "" }
         ),
         Failure::NotFound(why) => not_found(*why),
         Failure::Singular(Singular::Rigid { motions }) => {
@@ -151,9 +148,10 @@ fn body_motions(motions: &[RigidMotion]) -> String {
             LooseMotion::Translation(along) => ("move along", along),
             LooseMotion::Rotation(about) => ("rotate about", about),
         };
-        let verb = match std::mem::replace(&mut before, verb) == verb {
-            true => String::new(),
-            false => format!("{verb} "),
+        let verb = if std::mem::replace(&mut before, verb) == verb {
+            String::new()
+        } else {
+            format!("{verb} ")
         };
         format!("{verb}({}, {})", rounded(x), rounded(y))
     });
@@ -165,8 +163,9 @@ fn body_motions(motions: &[RigidMotion]) -> String {
 fn rounded(x: f64) -> f64 {
     let rounded = (x * 1e4).round() / 1e4;
     // Avoid "-0", and infinity for very large numbers.
-    match rounded.is_finite() {
-        true => rounded + 0.0,
-        false => x,
+    if rounded.is_finite() {
+        rounded + 0.0
+    } else {
+        x
     }
 }

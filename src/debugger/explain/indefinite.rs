@@ -132,27 +132,29 @@ fn solved(
 ) -> Option<(Strategy, Answer)> {
     let mut of_ladder = problem.clone();
     of_ladder.settings.strategy = Strategy::Ladder;
-    let rungs = rungs(Strategy::Ladder);
-    rungs.iter().enumerate().find_map(|(rung, &strategy)| {
-        if stop() {
-            return None;
-        }
-        let mut problem = of_ladder.clone();
-        problem.settings = in_force(&of_ladder.settings, rung, problem.nodes.len());
-        let found = match strategy {
-            // The result of these strategies is in the run's messages; here the forces have to be unique.
-            Strategy::Copositive | Strategy::GaussSeidel => return None,
-            Strategy::Lemke => by_pivoting(&problem, tolerance),
-            Strategy::Census => {
-                let found = search(&problem, BRANCHES, stop).ok()?;
-                found.answers.into_iter().next().map(|state| state.answer)
+    rungs(Strategy::Ladder)
+        .iter()
+        .enumerate()
+        .find_map(|(rung, &strategy)| {
+            if stop() {
+                return None;
             }
-            _ => by_iterations(&problem),
-        };
-        found
-            .filter(|answer| answer.obeys(tolerance))
-            .map(|answer| (strategy, answer))
-    })
+            let mut problem = of_ladder.clone();
+            problem.settings = in_force(&of_ladder.settings, rung, problem.nodes.len());
+            let found = match strategy {
+                // The result of these strategies is in the run's messages; here the forces have to be unique.
+                Strategy::Copositive | Strategy::GaussSeidel => return None,
+                Strategy::Lemke => by_pivoting(&problem, tolerance),
+                Strategy::Census => {
+                    let found = search(&problem, BRANCHES, stop).ok()?;
+                    found.answers.into_iter().next().map(|state| state.answer)
+                }
+                _ => by_iterations(&problem),
+            };
+            found
+                .filter(|answer| answer.obeys(tolerance))
+                .map(|answer| (strategy, answer))
+        })
 }
 
 /// The state at which the minor iterations settle.
@@ -165,9 +167,10 @@ fn by_iterations(problem: &InterfaceProblem) -> Option<Answer> {
         if settled {
             let of = records.iter().zip(&problem.nodes).map(|(record, node)| {
                 let assumed = AssumedMode::from_mode(record.decision.next, record.t_max_used);
-                match node.choices().contains(&assumed) {
-                    true => assumed,
-                    false => AssumedMode::from_mode(record.decision.next, 1.0),
+                if node.choices().contains(&assumed) {
+                    assumed
+                } else {
+                    AssumedMode::from_mode(record.decision.next, 1.0)
                 }
             });
             return trials.answer(&of.collect::<Vec<_>>());
@@ -178,11 +181,14 @@ fn by_iterations(problem: &InterfaceProblem) -> Option<Answer> {
 
 /// The state at which pivoting ends.
 fn by_pivoting(problem: &InterfaceProblem, tolerance: f64) -> Option<Answer> {
-    let brought = problem.nodes.iter().map(|node| {
-        let state = &node.state;
-        AssumedMode::from_mode(state.mode, state.t_max)
-    });
-    let brought: Vec<AssumedMode> = brought.collect();
+    let brought: Vec<AssumedMode> = problem
+        .nodes
+        .iter()
+        .map(|node| {
+            let state = &node.state;
+            AssumedMode::from_mode(state.mode, state.t_max)
+        })
+        .collect();
     let mut trials = Trials::new(problem)?;
     (0..STARTS).find_map(|start| {
         let mut path = Lemke::new(problem, &brought, start)?;
@@ -286,7 +292,11 @@ fn does<'a>(answer: &Answer, name: &impl Fn(usize) -> &'a str) -> String {
     if answer.nodes.len() > MOST_NAMED {
         return answer.letters();
     }
-    let nodes = answer.nodes.iter().enumerate();
-    let words = nodes.map(|(place, node)| format!("{} {}", name(place), answer_words(node)));
-    words.collect::<Vec<_>>().join(", ")
+    answer
+        .nodes
+        .iter()
+        .enumerate()
+        .map(|(place, node)| format!("{} {}", name(place), answer_words(node)))
+        .collect::<Vec<_>>()
+        .join(", ")
 }

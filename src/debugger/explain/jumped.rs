@@ -33,9 +33,10 @@ pub fn jump(motion: f64, predicted: f64, unstable: Option<Stability>) -> String 
 pub fn reservation(jumped: bool, unstable: Option<&StabilityLoss>) -> String {
     match unstable {
         Some(loss) => {
-            let since = loss.stable_at.map_or(String::new(), |load| {
-                format!("; last known to be stable at load {}", shortest(load))
-            });
+            let since = loss
+                .stable_at
+                .map(|load| format!("; last known to be stable at load {}", shortest(load)))
+                .unwrap_or_default();
             format!(", unstable: {}{since}", leads_away(loss.stability))
         }
         None if jumped => ", after a jump to another branch".into(),

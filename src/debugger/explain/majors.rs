@@ -125,7 +125,9 @@ pub fn cycle_words(model: &Model, attempt: &Attempt, round: &MajorCycle) -> Vec<
                     let surface = model.surfaces.get(surface);
                     surface.is_some_and(|surface| !surface.smooth.is_empty())
                 };
-                let meet = kink.map_or(String::new(), |kink| format!(", {}", kink.words()));
+                let meet = kink
+                    .map(|kink| format!(", {}", kink.words()))
+                    .unwrap_or_default();
                 lines.push(Fact::why(format!(
                     "{name}, now at {here}, alternates between {one} and {other}{meet}; {moves}"
                 )));
@@ -190,10 +192,11 @@ fn switches(stops: &[Stop]) -> Option<[Mode; 2]> {
 /// The largest distance between two positions of a node in these major iterations.
 fn moved(model: &Model, around: &[Major], node: usize) -> f64 {
     let places: Vec<[f64; 2]> = around.iter().map(|m| model.place(&m.u, node)).collect();
-    let pairs = places
+    places
         .iter()
-        .flat_map(|a| places.iter().map(move |b| (a, b)));
-    pairs.map(|(a, b)| distance(*a, *b)).fold(0.0, f64::max)
+        .flat_map(|a| places.iter().map(move |b| (a, b)))
+        .map(|(a, b)| distance(*a, *b))
+        .fold(0.0, f64::max)
 }
 
 /// The last residuals, in one line.
@@ -297,16 +300,20 @@ fn changes(model: &Model, majors: &[Major]) -> Vec<String> {
         let [before, now] = pair else {
             return None;
         };
-        let nodes = before.contacts.iter().zip(&now.contacts).enumerate();
-        let changed = nodes.filter_map(|(s, ((mode_a, on_a), (mode_b, on_b)))| {
-            let name = slave(model, s);
-            if mode_a != mode_b {
-                return Some(format!("{name} {} → {}", mode(*mode_a), mode(*mode_b)));
-            }
-            let on = |on: &Option<SurfacePoint>| on.map(|on| (on.surface, on.element));
-            (*mode_b != Mode::Free && on(on_a) != on(on_b))
-                .then(|| format!("{name} onto {}", place(model, on(on_b))))
-        });
+        let changed = before
+            .contacts
+            .iter()
+            .zip(&now.contacts)
+            .enumerate()
+            .filter_map(|(s, ((mode_a, on_a), (mode_b, on_b)))| {
+                let name = slave(model, s);
+                if mode_a != mode_b {
+                    return Some(format!("{name} {} → {}", mode(*mode_a), mode(*mode_b)));
+                }
+                let on = |on: &Option<SurfacePoint>| on.map(|on| (on.surface, on.element));
+                (*mode_b != Mode::Free && on(on_a) != on(on_b))
+                    .then(|| format!("{name} onto {}", place(model, on(on_b))))
+            });
         let changed: Vec<String> = changed.collect();
         let text = first_of(changed, MOST_CHANGES, ", ");
         (!text.is_empty()).then(|| format!("major {}: {text}", k + 2))
@@ -323,8 +330,12 @@ pub fn flight_words(model: &Model, state: &State, attempt: &Attempt) -> Vec<Fact
         );
         distance(now, then)
     };
-    let nodes = model.bodies.iter().flat_map(|body| &body.nodes).copied();
-    let furthest = nodes.max_by(|a, b| way(*a).total_cmp(&way(*b)));
+    let furthest = model
+        .bodies
+        .iter()
+        .flat_map(|body| &body.nodes)
+        .copied()
+        .max_by(|a, b| way(*a).total_cmp(&way(*b)));
     let place = furthest.map(|node| {
         Fact::why(format!(
             "{} moved furthest from the last equilibrium, by {} (scene length {})",

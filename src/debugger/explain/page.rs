@@ -255,9 +255,10 @@ impl DiagnosisPage {
 
     /// The page as text, one fact per line.
     pub fn lines(&self) -> Vec<String> {
-        let mut lines = match self.found.fails {
-            true => vec![format!("What: {}", self.what)],
-            false => vec![self.what.clone()],
+        let mut lines = if self.found.fails {
+            vec![format!("What: {}", self.what)]
+        } else {
+            vec![self.what.clone()]
         };
         lines.extend(self.why.iter().map(|text| format!("Why: {text}")));
         let tries = self.tries.iter().enumerate();
@@ -644,13 +645,10 @@ fn finer_line(finer: &MeshProbe) -> TryLine {
 /// Why equations may be singular although no body has a free rigid motion.
 fn unexplained(model: &Model) -> &'static str {
     let given = |body: &Body| matches!(body.kind, BodyKind::Linear(_));
-    match model.bodies.iter().any(given) {
-        true => {
-            "in one direction the forces do not change: the matrix of a body is singular and no contact restrains it, or the load has reached its maximum on this branch (a limit point)"
-        }
-        false => {
-            "in one direction the forces do not change, although every body is held: the load has reached its maximum on this branch (a limit point), or contacts and supports are redundant"
-        }
+    if model.bodies.iter().any(given) {
+        "in one direction the forces do not change: the matrix of a body is singular and no contact restrains it, or the load has reached its maximum on this branch (a limit point)"
+    } else {
+        "in one direction the forces do not change, although every body is held: the load has reached its maximum on this branch (a limit point), or contacts and supports are redundant"
     }
 }
 

@@ -176,8 +176,11 @@ pub fn offered(
         .filter_map(|mode| Remedy::touching(state, mode));
     let answers = Remedy::answers(model, found).into_iter();
     let tuned = offers.parameters.iter().flat_map(Remedy::tuned);
-    let all = answers.chain(touching).chain(tuned).chain(parts);
-    all.filter(|remedy| remedy.first.iter().all(|first| offers.check(first).is_ok()))
+    answers
+        .chain(touching)
+        .chain(tuned)
+        .chain(parts)
+        .filter(|remedy| remedy.first.iter().all(|first| offers.check(first).is_ok()))
         .collect()
 }
 

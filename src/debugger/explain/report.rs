@@ -252,10 +252,12 @@ fn outcome_with(model: &Model, event: &Event, failed: fn(&Model, &Failure) -> St
         Outcome::Increment {
             after, found, last, ..
         } => {
-            let found = found.map_or(String::new(), |by| format!(", found with {}", by.words()));
+            let found = found
+                .map(|by| format!(", found with {}", by.words()))
+                .unwrap_or_default();
             let end = if *last { jumped::end(model, event) } else { "" };
             let left = accuracy::left(after).or_else(|| accuracy::settled(event));
-            let left = left.map_or(String::new(), |left| format!("; {left}"));
+            let left = left.map(|left| format!("; {left}")).unwrap_or_default();
             format!(
                 "{at}: load {} accepted{found}{}{left}{end}",
                 shortest(event.load_factor),
@@ -338,7 +340,9 @@ fn pivot(model: &Model, event: &Event) -> String {
         Some(format!("at {} {what}", slave(model, s)))
     });
     let cover = (0..event.nodes.len()).find_map(|s| Some(tests(s)[0]?.value));
-    let left = cover.map_or(String::new(), |z| format!("relaxed by z = {}", sig4(z)));
+    let left = cover
+        .map(|z| format!("relaxed by z = {}", sig4(z)))
+        .unwrap_or_default();
     match what {
         Some(what) => format!("pivot: {what}; {left}"),
         None => format!("pivot; {left}"),

@@ -93,9 +93,9 @@ pub fn other_law(model: &Model, point: &PointDeformation) -> Option<(String, Str
 
 /// Describes an accepted increment that leaves the range, with a suitable law.
 pub fn left(model: &Model, point: &PointDeformation) -> String {
-    let suggested = other_law(model, point).map_or(String::new(), |(path, value)| {
-        format!(" (suggested, not tried: {path}={value})")
-    });
+    let suggested = other_law(model, point)
+        .map(|(path, value)| format!(" (suggested, not tried: {path}={value})"))
+        .unwrap_or_default();
     format!("{}{suggested}", outside(model, point))
 }
 

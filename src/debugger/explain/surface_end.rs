@@ -39,14 +39,15 @@ pub fn passed_end(stepper: &mut Stepper, state: &State, stop: &dyn Fn() -> bool)
     let mut all = behind(&model, state);
     all.sort_by(|a, b| a.past.total_cmp(&b.past));
     let near = all.into_iter().take(MOST_NODES);
-    let enters = |found: &PassedEnd| enters(stepper, state, found, stop);
     let PassedEnd {
         slave,
         surface,
         at: [x, y],
         depth,
         ..
-    } = near.into_iter().find(enters)?;
+    } = near
+        .into_iter()
+        .find(|found| enters(stepper, state, found, stop))?;
     let (name, on) = (names::slave(&model, slave), &model.surfaces[surface].name);
     let [x, y, depth] = [x, y, depth].map(sig4);
     Some(format!(
@@ -142,9 +143,10 @@ fn enters(
         };
         let spot = stepper.state().nodes[slave].spot;
         let over = spot.is_some_and(|spot| spot.surface == found.surface);
-        match balanced && over {
-            true => ControlFlow::Break(true),
-            false => ControlFlow::Continue(()),
+        if balanced && over {
+            ControlFlow::Break(true)
+        } else {
+            ControlFlow::Continue(())
         }
     });
     end == RunEnd::Stopped(true)

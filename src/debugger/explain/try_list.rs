@@ -70,7 +70,9 @@ impl TryLine {
     /// The line of a remedy that is still to be tried; `seconds` is the time of an earlier trial.
     pub fn untried(remedy: &Remedy, seconds: Option<f64>) -> TryLine {
         let about = seconds.filter(|seconds| *seconds >= 1.0);
-        let about = about.map_or(String::new(), |seconds| format!(", about {seconds:.0} s"));
+        let about = about
+            .map(|seconds| format!(", about {seconds:.0} s"))
+            .unwrap_or_default();
         TryLine {
             label: remedy.label.clone(),
             typed: typed(&remedy.how),

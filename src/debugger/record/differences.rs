@@ -395,9 +395,9 @@ fn status(status: &Status) -> String {
 impl fmt::Display for Differences {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let apart = |row: &Difference| {
-            row.apart.map_or(String::new(), |(apart, allowed)| {
-                format!("{} > {}", sig4(apart), sig2(allowed))
-            })
+            row.apart
+                .map(|(apart, allowed)| format!("{} > {}", sig4(apart), sig2(allowed)))
+                .unwrap_or_default()
         };
         let mut lines = vec![["", "left", "right", "apart > allowed"].map(str::to_owned)];
         lines.extend(

@@ -343,31 +343,22 @@ impl SlaveRecord {
         let now = &state.nodes[slave];
         let node = model.nodes[model.contacts[slave].node].name.clone();
         // A minor iteration that cannot be solved has no records.
-        match event.and_then(|e| e.nodes.get(slave)) {
-            Some(found) => SlaveRecord {
-                node,
-                mode: found.decision.before,
-                next: now.mode,
-                rule: Some(found.decision.rule),
-                gap: Some(found.gap),
-                f_n: found.f_n,
-                f_t: found.f_t,
-                t_max: found.t_max,
-                slip: found.slip,
-                forced: now.forced,
-            },
-            None => SlaveRecord {
-                node,
-                mode: now.mode,
-                next: now.mode,
-                rule: None,
-                gap: None,
-                f_n: now.f_n,
-                f_t: now.f_t,
-                t_max: now.t_max,
-                slip: now.slip,
-                forced: now.forced,
-            },
+        let found = event.and_then(|e| e.nodes.get(slave));
+        let [f_n, f_t, t_max, slip] = match found {
+            Some(found) => [found.f_n, found.f_t, found.t_max, found.slip],
+            None => [now.f_n, now.f_t, now.t_max, now.slip],
+        };
+        SlaveRecord {
+            node,
+            mode: found.map_or(now.mode, |found| found.decision.before),
+            next: now.mode,
+            rule: found.map(|found| found.decision.rule),
+            gap: found.map(|found| found.gap),
+            f_n,
+            f_t,
+            t_max,
+            slip,
+            forced: now.forced,
         }
     }
 }

@@ -51,7 +51,7 @@ pub fn requests(intervention: &Intervention, ids: &[Id], offers: &Capabilities) 
         }
         Intervention::Increment(size) => vec![set(INCREMENT, *size)],
         Intervention::Friction(friction) => coulomb(friction),
-        Intervention::Frictions(all) => all.first().map_or_else(Vec::new, coulomb),
+        Intervention::Frictions(all) => all.first().map(coulomb).unwrap_or_default(),
         Intervention::Settings(_) => Vec::new(),
         Intervention::Parameter { name, value } => vec![Request::Set {
             name: name.clone(),

@@ -380,7 +380,7 @@ impl Session {
                 hits,
                 remark,
             } => {
-                let remark = remark.map_or(String::new(), |remark| remark + "; ");
+                let remark = remark.map(|remark| remark + "; ").unwrap_or_default();
                 Some(remark + &self.done(interrupted, &hits))
             }
             Message::Lost(lost) => {

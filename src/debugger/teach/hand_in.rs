@@ -15,7 +15,8 @@ pub fn write(own: &Path, to: &Path, overwrite: bool) -> Result<String, ProgressE
     let mut progress = Progress::read(own)?;
     progress.name = to
         .file_stem()
-        .map_or(String::new(), |stem| stem.to_string_lossy().into_owned());
+        .map(|stem| stem.to_string_lossy().into_owned())
+        .unwrap_or_default();
     progress.write(to, overwrite)?;
     Ok(progress.name)
 }
@@ -69,9 +70,9 @@ fn student(progress: &Progress) -> Vec<String> {
 /// The row of a lesson that these students took.
 fn lesson(name: &str, students: usize, taken: &[&LessonProgress]) -> Vec<String> {
     let done = taken.iter().filter(|lesson| lesson.is_done()).count();
-    let missed = most_missed(taken).map_or(String::new(), |(step, wrong)| {
-        format!("step {}, by {wrong} of {}", step + 1, taken.len())
-    });
+    let missed = most_missed(taken)
+        .map(|(step, wrong)| format!("step {}, by {wrong} of {}", step + 1, taken.len()))
+        .unwrap_or_default();
     vec![
         name.to_owned(),
         format!("{done} of {students}"),

@@ -130,10 +130,16 @@ fn advance(
                     step: at,
                     before: std::mem::take(&mut before),
                     question: tutor.text().to_owned(),
-                    options: question.map_or(Vec::new(), |question| question.options.clone()),
+                    options: question
+                        .map(|question| question.options.clone())
+                        .unwrap_or_default(),
                     answer: readable(tutor, &word),
-                    then: question.map_or(String::new(), TutorQuestion::reply_to_right),
-                    hint: question.map_or(String::new(), |question| question.reply_to_wrong("")),
+                    then: question
+                        .map(TutorQuestion::reply_to_right)
+                        .unwrap_or_default(),
+                    hint: question
+                        .map(|question| question.reply_to_wrong(""))
+                        .unwrap_or_default(),
                 });
                 tutor
                     .answer(&word, 0, session.cursor(), session.frame())

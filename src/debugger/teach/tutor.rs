@@ -131,7 +131,8 @@ impl Tutor {
     pub(super) fn last_reply(&self) -> String {
         self.remark
             .as_ref()
-            .map_or(String::new(), |remark| remark.text.clone())
+            .map(|remark| remark.text.clone())
+            .unwrap_or_default()
     }
 
     /// Index of the current step, from 0; the number of steps when the lesson has ended.

@@ -580,7 +580,7 @@ impl ContactResult {
 
     /// The id for messages to the user.
     pub fn label(&self) -> String {
-        self.id.as_ref().map_or_else(String::new, Id::to_string)
+        self.id.as_ref().map(Id::to_string).unwrap_or_default()
     }
 }
 

@@ -77,7 +77,9 @@ fn body<'a, T: Deserialize<'a>>(line: &'a str) -> Result<T, FormatError> {
         let path = found.filter(|_| !error.is_eof());
         broken(
             line,
-            &path.map_or_else(String::new, |found| found.path().to_string()),
+            &path
+                .map(|found| found.path().to_string())
+                .unwrap_or_default(),
             &error,
         )
     })

@@ -150,7 +150,8 @@ impl Reader {
             Some(Treatment::Refused(why)) => bail!(card, "{why}"),
             None => {
                 let like = nearest(&card.key)
-                    .map_or_else(String::new, |name| format!("; did you mean *{name}?"));
+                    .map(|name| format!("; did you mean *{name}?"))
+                    .unwrap_or_default();
                 bail!(card, "it is not a supported keyword{like}")
             }
             Some(Treatment::Read(_, reading)) => Ok(reading),

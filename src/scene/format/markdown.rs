@@ -48,13 +48,15 @@ fn fields(form: &Form, all: &[Type]) -> String {
     let mut text = String::new();
     for field in &form.fields {
         let default = field.default.as_ref();
-        let default = default.map_or_else(String::new, |value| {
-            if value.starts_with("all its") {
-                format!(", default {value}")
-            } else {
-                format!(", default `{value}`")
-            }
-        });
+        let default = default
+            .map(|value| {
+                if value.starts_with("all its") {
+                    format!(", default {value}")
+                } else {
+                    format!(", default `{value}`")
+                }
+            })
+            .unwrap_or_default();
         let words = words(field, all);
         let kind = match words {
             Some(_) => "one of these words".to_owned(),

@@ -209,7 +209,8 @@ pub fn plainly(error: &ron::Error) -> String {
     const MOST: usize = 300;
     let text = shown::cut(&error.to_string(), MOST);
     let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| {
-        first.to_lowercase().chain(letters).collect()
-    })
+    letters
+        .next()
+        .map(|first| first.to_lowercase().chain(letters).collect())
+        .unwrap_or_default()
 }

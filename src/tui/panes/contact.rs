@@ -182,13 +182,16 @@ fn words(
     let gap = round_off.length(record.gap);
     let row = |text: String| paint::wrapped(&text, width, theme.text);
     let mode = view.mode_before(slave);
-    let angle = record.deviation().map_or(String::new(), |angle| {
-        format!(
-            "  slip {}  angle {:.0}°",
-            number(round_off.length(record.slip)),
-            angle.to_degrees()
-        )
-    });
+    let angle = record
+        .deviation()
+        .map(|angle| {
+            format!(
+                "  slip {}  angle {:.0}°",
+                number(round_off.length(record.slip)),
+                angle.to_degrees()
+            )
+        })
+        .unwrap_or_default();
     let force = format!(
         "g {}  F_n {}  F_t {}  T_max {}{angle}",
         number(gap),

@@ -149,7 +149,7 @@ fn judged(view: &View, theme: &Theme) -> Option<Line<'static>> {
         ("✓", theme.good)
     };
     let node = worst.slave.map(|slave| names::slave(view.model, slave));
-    let place = node.map_or(String::new(), |node| format!(" at {node}"));
+    let place = node.map(|node| format!(" at {node}")).unwrap_or_default();
     Some(Line::from(vec![
         Span::styled(" judge ", theme.faint),
         Span::styled(sign, style),

@@ -207,14 +207,18 @@ fn outcome(app: &App, view: &View, width: u16) -> paint::Lines {
         let turns = (app.busy.as_millis() / TURN.as_millis()) as usize;
         let turn = SPINNER[turns % SPINNER.len()];
         let progress = view.attached.and_then(|attached| attached.log.progress());
-        let far = view.frames.last().map_or(String::new(), |frame| {
-            let state = &frame.state;
-            let load = names::load_of(view.model, state.start.leg, state.load_factor);
-            match progress {
-                Some(_) => load,
-                None => format!("{load}, {}", names::position(state.next)),
-            }
-        });
+        let far = view
+            .frames
+            .last()
+            .map(|frame| {
+                let state = &frame.state;
+                let load = names::load_of(view.model, state.start.leg, state.load_factor);
+                match progress {
+                    Some(_) => load,
+                    None => format!("{load}, {}", names::position(state.next)),
+                }
+            })
+            .unwrap_or_default();
         let took = match app.busy.as_secs() {
             0 | 1 => String::new(),
             seconds => format!(", {seconds} s"),

@@ -250,9 +250,14 @@ impl Iterate {
 /// Sum of the squares of all displacements since the start of the step.
 fn square_of_motion(iterate: &Iterate) -> f64 {
     let (now, before) = (&iterate.state.u, &iterate.state.start.u);
-    let of = |first: &usize| -> f64 {
-        let square = |d: usize| (now[d] - before[d]).powi(2);
-        square(*first) + square(first + 1)
-    };
-    iterate.model.dofs.first.iter().map(of).sum()
+    iterate
+        .model
+        .dofs
+        .first
+        .iter()
+        .map(|first| -> f64 {
+            let square = |d: usize| (now[d] - before[d]).powi(2);
+            square(*first) + square(first + 1)
+        })
+        .sum()
 }

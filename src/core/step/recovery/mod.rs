@@ -106,8 +106,9 @@ impl Stepper {
     /// Restarts the increment with the next fallback: first the one of the search that helped last. `None` if none applies.
     pub(super) fn fall_back(&mut self, why: &Failure) -> Option<Outcome> {
         let adopted = self.now.state.record.searched.adopted;
-        let first = adopted.filter(|_| self.now.state.recovery.fallback.is_none());
-        let again = first.and_then(|by| self.recover(&[&by], why));
+        let again = adopted
+            .filter(|_| self.now.state.recovery.fallback.is_none())
+            .and_then(|by| self.recover(&[&by], why));
         again.or_else(|| self.recover(&FALLBACKS, why))
     }
 

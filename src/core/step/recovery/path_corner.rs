@@ -31,7 +31,7 @@ use crate::step::arc_state::{ArcState, Change};
 use crate::step::iterate::Iterate;
 use crate::{
     BoundUpdate, ContactRecord, ContactState, Failure, Forced, Friction, Mode, NodeIncrement,
-    NodeKinematics, Outcome, SolveResult, State,
+    Outcome, SolveResult, State,
 };
 use std::sync::Arc;
 
@@ -86,10 +86,9 @@ impl Iterate {
         let mut first = (f64::INFINITY, Vec::new());
         for (contact, node) in state.nodes.iter().enumerate() {
             let over = self.source.kinematics(contact);
-            let is_free = |over: &NodeKinematics| {
-                !matches!(node.forced, Forced::Held(_)) && !over.bond.is_tied()
-            };
-            let Some(over) = over.filter(is_free) else {
+            let Some(over) =
+                over.filter(|over| !matches!(node.forced, Forced::Held(_)) && !over.bond.is_tied())
+            else {
                 continue;
             };
             let friction = node.friction(&state.controls.friction[contact]);
@@ -140,11 +139,15 @@ impl Iterate {
             return Err(Failure::PathReversal);
         }
         let (still, there) = self.solve_tangent()?;
-        let rates = given.iter().zip(&there).map(|(a, b)| NodeIncrement {
-            force: minus(a.force, b.force),
-            motion: minus(a.motion, b.motion),
-        });
-        let rates: Vec<Rates> = rates.map(Rates::from).collect();
+        let rates: Vec<Rates> = given
+            .iter()
+            .zip(&there)
+            .map(|(a, b)| NodeIncrement {
+                force: minus(a.force, b.force),
+                motion: minus(a.motion, b.motion),
+            })
+            .map(Rates::from)
+            .collect();
         let sign = self.state.way.as_ref().and_then(|way| {
             let signs = way.next.iter().map(|change| {
                 let contact = change.contact;
@@ -191,8 +194,11 @@ impl Iterate {
     /// concave corner if they slide into it, or if they stick there and would slide by the friction of one side. Returns false if
     /// the state cannot be linearised then. A contact that goes `through` such a corner slides out of it at once.
     fn enter_corners(&mut self) -> bool {
-        let changes = self.state.way.as_ref();
-        let mut changes = changes.map_or_else(Vec::new, |way| way.next.to_vec());
+        let mut changes = self
+            .state
+            .way
+            .as_ref()
+            .map_or_else(Vec::new, |way| way.next.to_vec());
         let starts = self.state.start.clone();
         for change in changes.iter().filter(|change| change.through) {
             let start = &starts.nodes[change.contact];
@@ -249,10 +255,16 @@ impl State {
     /// they continue to slide.
     pub(in crate::step) fn onwards(&self, given: &[NodeIncrement]) -> f64 {
         let nodes = &self.nodes;
-        let slips = self.way.as_ref().map(|way| way.slips.clone());
-        let slips = slips.unwrap_or_default();
-        let sliding = nodes.iter().zip(given).zip(slips.iter());
-        let mut sliding = sliding.filter(|((node, _), _)| node.mode == Mode::Sliding);
+        let slips = self
+            .way
+            .as_ref()
+            .map(|way| way.slips.clone())
+            .unwrap_or_default();
+        let mut sliding = nodes
+            .iter()
+            .zip(given)
+            .zip(slips.iter())
+            .filter(|((node, _), _)| node.mode == Mode::Sliding);
         let turns = |((node, given), slip): ((&ContactState, &NodeIncrement), &f64)| {
             let rate = given.motion[1];
             node.sign * rate < 0.0 && rate.abs() > REVERSAL * slip.abs()
@@ -269,8 +281,10 @@ impl State {
         if !way.seen.is_empty() || way.turned {
             return;
         }
-        let records = records.iter().enumerate();
-        let changed = records.filter(|(_, record)| record.decision.changes());
+        let changed = records
+            .iter()
+            .enumerate()
+            .filter(|(_, record)| record.decision.changes());
         let nodes = &self.nodes;
         let seen = changed.map(|(contact, record)| Change {
             contact,
@@ -295,11 +309,15 @@ impl State {
             return false;
         };
         if way.turned {
-            let mut changes = way.next.iter();
-            return changes.any(|change| nodes[change.contact].mode != change.to);
+            return way
+                .next
+                .iter()
+                .any(|change| nodes[change.contact].mode != change.to);
         }
-        let mut both = nodes.iter().zip(&self.start.nodes);
-        both.any(|(now, start)| (start.mode, now.mode) == (Mode::Sliding, Mode::Fixed))
+        nodes
+            .iter()
+            .zip(&self.start.nodes)
+            .any(|(now, start)| (start.mode, now.mode) == (Mode::Sliding, Mode::Fixed))
     }
 }
 
@@ -393,8 +411,7 @@ fn end_of_mode(
     // Where a + s b falls to 0; at once if it is 0 already.
     let falls = |a: f64, b: f64| (b < 0.0).then(|| (-a / b).max(0.0));
     let first = |all: [Option<(f64, Mode, f64)>; 3]| {
-        let all = all.into_iter().flatten();
-        all.min_by(|a, b| a.0.total_cmp(&b.0))
+        all.into_iter().flatten().min_by(|a, b| a.0.total_cmp(&b.0))
     };
     let opens = || falls(node.f_n, rates.f_n).map(|s| (s, Mode::Free, 0.0));
     #[cfg(mutants)]

@@ -105,7 +105,9 @@ impl State {
 
     /// Whether the brake still carries a part of the friction, which the judge would report as missing.
     pub(in crate::step) fn is_carried(&self, after: &Norms) -> bool {
-        let holds = |brake: SlipStiffness| brake.stiffness > 0.0;
-        self.recovery.brake.is_some_and(holds) && after.interface > EXACT
+        self.recovery
+            .brake
+            .is_some_and(|brake| brake.stiffness > 0.0)
+            && after.interface > EXACT
     }
 }

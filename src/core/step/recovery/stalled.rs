@@ -3,7 +3,7 @@
 use super::fallback::{DEEPER, Fallback};
 use crate::model::{BodyKind, Factor, Jumps, SearchMode};
 use crate::plane::max_abs;
-use crate::{ContactState, Failure, Mode, Model, Singular, Source, State};
+use crate::{Failure, Mode, Model, Singular, Source, State};
 
 /// Minimum size of a half, as a fraction of the whole increment.
 const SMALLEST_HALF: f64 = 1e-9;
@@ -81,9 +81,13 @@ impl FailedIncrement<'_> {
             let over = self.source.kinematics(contact);
             over.is_some_and(|over| over.gap.abs() <= least)
         };
-        let nodes = self.state.start.nodes.iter().enumerate();
-        let free = nodes.filter(|(_, node)| node.mode == Mode::Free);
-        free.map(|(contact, _)| contact)
+        self.state
+            .start
+            .nodes
+            .iter()
+            .enumerate()
+            .filter(|(_, node)| node.mode == Mode::Free)
+            .map(|(contact, _)| contact)
             .filter(move |contact| closed(*contact))
     }
 
@@ -107,10 +111,9 @@ impl FailedIncrement<'_> {
                 | Failure::Refused(_)
                 | Failure::BranchJump { .. }
         );
-        let touches = |node: &ContactState| node.mode != Mode::Free;
         let mut nodes = self.state.nodes.iter().chain(&self.state.start.nodes);
         (helps || self.drowned(why))
-            && nodes.any(touches)
+            && nodes.any(|node| node.mode != Mode::Free)
             && self.source.brakes()
             && self.model.jumps != Jumps::Stop
     }
@@ -122,8 +125,10 @@ impl FailedIncrement<'_> {
 
     /// Whether all bodies are given as matrices.
     pub fn is_given(&self) -> bool {
-        let mut bodies = self.model.bodies.iter();
-        bodies.all(|body| matches!(body.kind, BodyKind::Linear(_)))
+        self.model
+            .bodies
+            .iter()
+            .all(|body| matches!(body.kind, BodyKind::Linear(_)))
     }
 
     /// Whether the problem is the same at any part of the load: matrices without gaps, cohesion or prescribed motions, loaded in
@@ -147,11 +152,6 @@ impl FailedIncrement<'_> {
                 .nodes
                 .iter()
                 .all(|n| n.f_n == 0.0 && n.f_t == 0.0 && n.slip == 0.0);
-        let closed = |contact: usize| {
-            self.source
-                .kinematics(contact)
-                .is_some_and(|k| k.gap == 0.0)
-        };
         matrices
             && proportional
             && unloaded
@@ -162,7 +162,11 @@ impl FailedIncrement<'_> {
                 .friction
                 .iter()
                 .all(|f| f.cohesion == 0.0)
-            && (0..model.contacts.len()).all(closed)
+            && (0..model.contacts.len()).all(|contact| {
+                self.source
+                    .kinematics(contact)
+                    .is_some_and(|k| k.gap == 0.0)
+            })
     }
 
     /// Whether a body is unsupported in the modes at the start of the increment, whatever its size.

@@ -67,29 +67,22 @@ pub fn grid(
     motion(model, state, &mut grid);
     stresses(model, state, &mut grid);
     contacts(model, state, event, &mut grid);
-    let whole = |value: u32| Values::Wholes(vec![i32::try_from(value).unwrap_or(i32::MAX)]);
-    let lines =
-        |names: Vec<&str>| Values::Text(names.iter().flat_map(|name| [name, "\n"]).collect());
+    let whole = |name: &str, value: u32| {
+        let value = i32::try_from(value).unwrap_or(i32::MAX);
+        array(name, &[], Values::Wholes(vec![value]))
+    };
+    let lines = |name: &str, names: &mut dyn Iterator<Item = &String>| {
+        let text = names.flat_map(|name| [name, "\n"]).collect();
+        array(name, &[], Values::Text(text))
+    };
     grid.fields = vec![
         array("TimeValue", &[], Values::Numbers(vec![load])),
-        array("increment", &[], whole(at.increment)),
-        array("major", &[], whole(at.major)),
-        array("minor", &[], whole(at.minor)),
-        array(
-            "node_names",
-            &[],
-            lines(model.nodes.iter().map(|n| &*n.name).collect()),
-        ),
-        array(
-            "body_names",
-            &[],
-            lines(model.bodies.iter().map(|b| &*b.name).collect()),
-        ),
-        array(
-            "surface_names",
-            &[],
-            lines(model.surfaces.iter().map(|s| &*s.name).collect()),
-        ),
+        whole("increment", at.increment),
+        whole("major", at.major),
+        whole("minor", at.minor),
+        lines("node_names", &mut model.nodes.iter().map(|n| &n.name)),
+        lines("body_names", &mut model.bodies.iter().map(|b| &b.name)),
+        lines("surface_names", &mut model.surfaces.iter().map(|s| &s.name)),
     ];
     Ok(grid)
 }
@@ -100,6 +93,12 @@ fn array(name: &str, components: &'static [&'static str], values: Values) -> Arr
         components,
         values,
     }
+}
+
+/// Numbers on the nodes.
+fn on_points(grid: &mut Grid, name: &str, components: &'static [&'static str], all: Vec<f64>) {
+    let array = array(name, components, Values::Numbers(all));
+    grid.on_points.push(array);
 }
 
 /// The cells of all bodies and surfaces, with their owners.
@@ -185,18 +184,13 @@ fn deformations(model: &Model, state: &State, grid: &mut Grid) {
 
 /// The cell with the VTK type of a kind of element.
 fn cell_kind(kind: ElementKind) -> Result<CellKind, ExportError> {
-    let mut cells = [
-        CellKind::Triangle3,
-        CellKind::Triangle6,
-        CellKind::Quad4,
-        CellKind::Quad8,
-        CellKind::Quad9,
-    ]
-    .into_iter();
-    let cell = cells.find(|&cell| vtu::cell_type(cell) == kind.vtk());
-    cell.ok_or_else(|| {
-        ExportError::NoFile(format!(".vtu files have no cell for a {}", kind.word()))
-    })
+    use CellKind::*;
+    [Triangle3, Triangle6, Quad4, Quad8, Quad9]
+        .into_iter()
+        .find(|&cell| vtu::cell_type(cell) == kind.vtk())
+        .ok_or_else(|| {
+            ExportError::NoFile(format!(".vtu files have no cell for a {}", kind.word()))
+        })
 }
 
 /// The cells of a line through nodes in order.
@@ -236,15 +230,13 @@ fn motion(model: &Model, state: &State, grid: &mut Grid) {
     let number = (1..).take(model.nodes.len()).collect();
     grid.on_points
         .push(array("node", &[], Values::Wholes(number)));
-    grid.on_points
-        .push(array("displacement", VECTOR, Values::Numbers(moved)));
+    on_points(grid, "displacement", VECTOR, moved);
     if turned.iter().any(Option::is_some) {
         let turned = turned
             .iter()
             .map(|angle| angle.unwrap_or(f64::NAN))
             .collect();
-        grid.on_points
-            .push(array("rotation", &[], Values::Numbers(turned)));
+        on_points(grid, "rotation", &[], turned);
     }
 }
 
@@ -271,8 +263,7 @@ fn stresses(model: &Model, state: &State, grid: &mut Grid) {
             }
         }
     }
-    grid.on_points
-        .push(array("stress", TENSOR, Values::Numbers(all)));
+    on_points(grid, "stress", TENSOR, all);
 }
 
 /// Contact record of a slave node: mode, force, and F_n, F_t, T_max, gap and slip.
@@ -308,8 +299,7 @@ fn contacts(model: &Model, state: &State, event: Option<&Event>, grid: &mut Grid
     }
     grid.on_points
         .push(array("contact_mode", &[], Values::Wholes(modes)));
-    grid.on_points
-        .push(array("contact_force", VECTOR, Values::Numbers(force)));
+    on_points(grid, "contact_force", VECTOR, force);
     let by_area = [&numbers[0], &numbers[1]].map(|forces| {
         let mut stresses = vec![f64::NAN; nodes];
         for contact in &model.contacts {
@@ -321,8 +311,7 @@ fn contacts(model: &Model, state: &State, event: Option<&Event>, grid: &mut Grid
     });
     let names = names.into_iter().chain(["pressure", "shear"]);
     for (name, values) in names.zip(numbers.into_iter().chain(by_area)) {
-        grid.on_points
-            .push(array(name, &[], Values::Numbers(values)));
+        on_points(grid, name, &[], values);
     }
 }
 

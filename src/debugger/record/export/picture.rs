@@ -491,9 +491,9 @@ impl ShapeDrawing<'_> {
         } else {
             format!("magnified ×{}", shortest(magnified))
         };
-        let number = numbered.map_or(String::new(), |row| {
-            format!(" ({row}): the node in row {row} of the table.")
-        });
+        let number = numbered
+            .map(|row| format!(" ({row}): the node in row {row} of the table."))
+            .unwrap_or_default();
         let words = format!(
             "Displacements {scale}, maximum {}; dashed: undeformed; green: supports, loads, and prescribed motions (double line).{number}",
             sig4(moved)

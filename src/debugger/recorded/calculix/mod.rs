@@ -74,7 +74,8 @@ pub fn open(run: CalculixRun, deck: Option<Deck>) -> Result<OpenedRun, String> {
     let scene = message::Scene {
         title: Path::new(&run.name)
             .file_name()
-            .map_or_else(String::new, |name| name.to_string_lossy().into_owned()),
+            .map(|name| name.to_string_lossy().into_owned())
+            .unwrap_or_default(),
         about: words::NO_MODES_IN_FULL.into(),
         dimension: 2,
         mesh: None,

@@ -90,7 +90,9 @@ pub fn attempt(run: &CalculixRun, attempt: usize) -> String {
         "converged" => format!("converged after {iterations}"),
         "cut" => {
             let next = run.files.attempts[attempt + 1].row;
-            let size = next.map_or(String::new(), |row| format!(" to {}", shortest(row.size)));
+            let size = next
+                .map(|row| format!(" to {}", shortest(row.size)))
+                .unwrap_or_default();
             format!("not converged in {iterations}; cut{size}")
         }
         "failed" => format!("not converged in {iterations}; the run ends here"),

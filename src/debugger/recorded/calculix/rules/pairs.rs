@@ -225,9 +225,9 @@ pub fn overlap(shape: &DeckShape) -> Vec<RunFinding> {
         if pressure.is_some_and(|pressure| pressure < LIGHT) {
             return None;
         }
-        let pressure = pressure.map_or(String::new(), |pressure| {
+        let pressure = pressure.map(|pressure| {
             format!(", a pressure of {} Young's moduli at once", sig4(pressure))
-        });
+        }).unwrap_or_default();
         Some(RunFinding {
             rule: "overlap at the start",
             cause: format!(

@@ -170,7 +170,8 @@ pub fn beyond_friction(shape: &DeckShape) -> Vec<RunFinding> {
         let needed = rounded_up(SPARE * along.norm() / pressed);
         let stick = law
             .stick
-            .map_or(String::new(), |slope| format!(", {}", plain(slope)));
+            .map(|slope| format!(", {}", plain(slope)))
+            .unwrap_or_default();
         let line = law.friction_place.line;
         Some(RunFinding {
             rule: "load above friction",

@@ -324,7 +324,7 @@ impl<'d> DeckShape<'d> {
             Some(set) => set.name.clone(),
             None => {
                 let first = nodes.first().map(|&node| self.deck.nodes[node].label);
-                first.map_or_else(String::new, |label| label.to_string())
+                first.map(|label| label.to_string()).unwrap_or_default()
             }
         }
     }
