@@ -16,8 +16,7 @@
 //! therefore repeat only the parts that depend on changed modes, with the same bits as a full factorization. Remainders are
 //! stored if changing rows may need them again, otherwise only until the parent has used them.
 //!
-//! The forward substitution works front by front, too: a front passes the change of the right-hand side of its later rows to its
-//! parent, and is repeated only if its factors, its part of the right-hand side or a child's change are new.
+//! In the forward substitution, too, a front is repeated only if its factors or the right-hand side of its rows have changed.
 
 use super::check::{SolveError, are_equal};
 use super::front::{Front, STEPS, substitute, substitute_back, subtract, subtract_all};
@@ -46,11 +45,11 @@ struct FactoredNode {
     changed: bool,
     /// Magnitude of its smallest pivot.
     smallest: f64,
-    /// L⁻¹ b of its pivots' rows and the change of the delayed and the later ones, in the last solve; `solved` if they are valid.
-    forward: Vec<f64>,
+    /// The right-hand side of its rows in the last solve before and after its forward substitution; `solved` if they belong to
+    /// its factors.
+    before: Vec<f64>,
+    after: Vec<f64>,
     solved: bool,
-    /// Whether the last solve computed them.
-    repeated: bool,
 }
 
 /// The fronts of a pattern, with their factors.
@@ -67,10 +66,8 @@ pub struct Fronts {
     front: Front,
     /// Temporary remainders, the last one on top.
     stack: Vec<f64>,
-    /// The right-hand side of the last solve, by equation.
-    b: Vec<f64>,
-    /// Workspace for solves: places in a front by equation, and a part of the solution.
-    places: Vec<usize>,
+    /// Workspace for solves: the right-hand side by equation, and that of a front.
+    forward: Vec<f64>,
     own: Vec<f64>,
 }
 
@@ -106,9 +103,9 @@ impl Fronts {
             remainder: Vec::new(),
             changed: true,
             smallest: 0.0,
-            forward: Vec::new(),
+            before: Vec::new(),
+            after: Vec::new(),
             solved: false,
-            repeated: false,
         });
         Ok(Fronts {
             fronts: fronts.collect(),
@@ -118,8 +115,7 @@ impl Fronts {
             ready: false,
             front: Front::default(),
             stack: Vec::new(),
-            b: vec![0.0; pattern.size()],
-            places: vec![0; pattern.size()],
+            forward: vec![0.0; pattern.size()],
             own: Vec::new(),
         })
     }
@@ -200,20 +196,10 @@ impl Fronts {
 
     /// Solves A x = b; `x` contains b on entry.
     pub fn solve(&mut self, x: &mut [f64]) {
-        for k in 0..self.fronts.len() {
-            let (done, rest) = self.fronts.split_at_mut(k);
-            let Some(own) = rest.first_mut() else { break };
-            let pivots = &own.node.unknowns[..own.node.pivots];
-            let same = |&unknown: &usize| self.b[unknown].to_bits() == x[unknown].to_bits();
-            let repeated = !own.solved
-                || own.children.iter().any(|&c| done[c].repeated)
-                || !pivots.iter().all(same);
-            own.repeated = repeated;
-            if repeated {
-                own.substitute(done, &mut self.places, x);
-            }
+        self.forward.copy_from_slice(x);
+        for front in &mut self.fronts {
+            front.substitute(&mut self.own, &mut self.forward);
         }
-        self.b.copy_from_slice(x);
         for front in self.fronts.iter().rev() {
             front.backward(&mut self.own, x);
         }
@@ -325,30 +311,28 @@ impl FactoredNode {
         self.smallest = pivots.fold(f64::INFINITY, |least, pivot| least.min(pivot.abs()));
     }
 
-    /// Computes `forward` from the right-hand side b and its children's; `places` is workspace by equation.
-    fn substitute(&mut self, done: &[FactoredNode], places: &mut [usize], b: &[f64]) {
-        for (place, &row) in self.rows.iter().enumerate() {
-            places[row] = place;
+    /// Forward substitution of its columns in b, the right-hand side by equation.
+    fn substitute(&mut self, own: &mut Vec<f64>, b: &mut [f64]) {
+        own.clear();
+        own.extend(self.rows.iter().map(|&row| b[row]));
+        // The sign of a zero counts, too.
+        let pairs = self.before.iter().zip(own.iter());
+        let changed = pairs.fold(0, |changed, (a, b)| changed | (a.to_bits() ^ b.to_bits()));
+        if !self.solved || changed != 0 {
+            self.before.clone_from(own);
+            self.after.clone_from(own);
+            substitute(&self.lower, &mut self.after);
+            self.solved = true;
         }
-        self.forward.clear();
-        self.forward.resize(self.rows.len(), 0.0);
-        for &row in &self.node.unknowns[..self.node.pivots] {
-            self.forward[places[row]] = b[row];
+        for (after, &row) in self.after.iter().zip(&self.rows) {
+            b[row] = *after;
         }
-        for child in self.children.iter().map(|&c| &done[c]) {
-            let left = child.rows[child.done..].iter();
-            for (&row, change) in left.zip(&child.forward[child.done..]) {
-                self.forward[places[row]] += change;
-            }
-        }
-        substitute(&self.lower, &mut self.forward);
-        self.solved = true;
     }
 
     fn backward(&self, own: &mut Vec<f64>, x: &mut [f64]) {
         let (size, done) = (self.rows.len(), self.done);
         own.clear();
-        own.extend_from_slice(&self.forward[..done]);
+        own.extend_from_slice(&self.after[..done]);
         let mut columns = self.upper.chunks_exact(done.max(1));
         let mut later = self.columns[done..].chunks_exact(STEPS);
         for later in &mut later {

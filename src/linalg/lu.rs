@@ -24,8 +24,10 @@ const SWEEPS: usize = 3;
 
 /// Backward error above which a solution is rejected.
 const BACKWARD_LIMIT: f64 = 1e-9;
-/// Backward error above which a solution is refined: round-off of large systems is below this.
-const REFINED: f64 = 1e-14;
+/// Backward error above which a solution is refined: a few units of round-off. In systems with more unknowns than `MANY`, sums are
+/// longer, and it grows with their number.
+const REFINED: f64 = 1e-15;
+const MANY: f64 = 4000.0;
 /// If the smallest pivot is above this, the matrix is regular, and the norm of its inverse is not estimated by a solve.
 const REGULAR: f64 = 1e-6;
 /// Values with a smaller exponent count as zero.
@@ -38,6 +40,8 @@ pub struct Factors {
     general: Option<General>,
     /// Which of the two contains the factors.
     used: LuKind,
+    /// Backward error above which a solution is refined.
+    refined: f64,
     row_scale: Vec<f64>,
     col_scale: Vec<f64>,
     /// Exponents of the values, of the scale, and of the largest value of each column.
@@ -104,6 +108,7 @@ impl Factors {
             fronts,
             general,
             used: LuKind::Neither,
+            refined: REFINED * f64::max(n as f64 / MANY, 1.0),
             row_scale: vec![1.0; n],
             col_scale: vec![1.0; n],
             exponents: vec![0; entries],
@@ -192,10 +197,7 @@ impl Factors {
         x.copy_from_slice(b);
         self.apply_inverse(x);
         let mut error = self.backward_error(b, x);
-        if std::env::var("FR").is_ok() {
-            eprintln!("FR {:.0}", 10.0 * error.log10());
-        }
-        if error > REFINED || error.is_nan() {
+        if error > self.refined || error.is_nan() {
             let mut correction = std::mem::take(&mut self.correction);
             for (c, (r, b)) in correction.iter_mut().zip(self.residual.iter().zip(b)) {
                 *c = b - r;
