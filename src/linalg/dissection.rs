@@ -14,6 +14,8 @@ use std::collections::BinaryHeap;
 /// A part is not cut if it has fewer unknowns than this, or fewer than this multiple of its cut.
 const LEAST: usize = 48;
 const TIMES: usize = 6;
+/// Number of the heights that are levels; 0 and 1 are x and y.
+const LEVELS: usize = 2;
 /// The smaller half contains at least this fraction of the part.
 const HALF: f64 = 0.3;
 
@@ -125,7 +127,7 @@ impl Dissection<'_> {
     fn cut(&mut self, mut found: Vec<usize>, far: usize) -> Option<[Vec<usize>; 3]> {
         let cut = if self.ranks[0].is_empty() {
             found = self.search(far);
-            self.lightest(&found, 2)
+            self.lightest(&found, LEVELS)
         } else {
             let cuts = [0, 1].map(|axis| {
                 found.sort_unstable_by_key(|&group| self.ranks[axis][group]);
@@ -164,7 +166,7 @@ impl Dissection<'_> {
         let all = self.weight(found);
         // Groups with neighbours beyond the current height, by the height up to which these reach.
         let mut open = BinaryHeap::new();
-        let (mut below, mut weight) = (0, 0);
+        let (mut below, mut reaching) = (0, 0);
         let mut best: Option<Cut> = None;
         for level in found.chunk_by(|&a, &b| heights[a] == heights[b]) {
             let rank = heights[level[0]];
@@ -175,16 +177,21 @@ impl Dissection<'_> {
                 let reach = others.map(|&other| heights[other]).max().unwrap_or(0);
                 below += own;
                 if reach > rank {
-                    weight += own;
+                    reaching += own;
                     open.push((Reverse(reach), own));
                 }
             }
             while let Some(&(Reverse(reach), own)) = open.peek()
                 && reach <= rank
             {
-                weight -= own;
+                reaching -= own;
                 open.pop();
             }
+            // A level is weighed whole: nearly all of it has neighbours beyond.
+            let weight = match which {
+                LEVELS => self.weight(level),
+                _ => reaching,
+            };
             let least = (below - weight).min(all - below) as f64;
             let lighter = best.as_ref().is_none_or(|best| weight < best.weight);
             if least >= HALF * all as f64 && lighter {
