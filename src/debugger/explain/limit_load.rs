@@ -6,7 +6,7 @@
 //! **Largest load.** From the last equilibrium, follows the path by arc length until the load falls, the path ends at a change of
 //! contacts, or every further step inverts an element.
 //!
-//! **Lost equilibrium.** If the path tells nothing, a damped motion leaves the last equilibrium ([`super::moves_away`]).
+//! **Lost equilibrium.** If the path shows no limit, a damped motion may leave the last equilibrium ([`super::moves_away`]).
 //!
 //! **Loose body.** Repeats the failed increment in smaller steps ([`super::load_limit_probe`]). In the last equilibrium, computes the remaining
 //! resistance of each contact of the body against the free motion. With v the relative velocity, friction resists with at

@@ -1,5 +1,5 @@
 //! Whether the last equilibrium is lost: with the loads of the smallest increment that fails held, a damped motion
-//! ([`stickslip_core::Motion`]) leaves it. If an equilibrium were near, the motion would come to rest there.
+//! ([`stickslip_core::Motion`]) leaves it. Near an equilibrium it would stop. What it leaves is this branch: further away it may find another one.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;

@@ -105,7 +105,7 @@ fn ends(model: &Model, surface: usize, places: &[[f64; 2]]) -> Option<[SurfaceEn
     (start != end && !chain.endless).then(|| [end_at(start, first, -1.0), end_at(end, second, 1.0)])
 }
 
-/// Whether the increment, with the node held free, comes to a balance of forces in which the node is behind the surface.
+/// Whether forces balance during the increment, with the node held free, while the node is behind the surface.
 fn enters(
     stepper: &mut Stepper,
     state: &State,

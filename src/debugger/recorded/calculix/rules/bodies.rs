@@ -47,7 +47,7 @@ pub fn unconnected(shape: &DeckShape) -> Vec<RunFinding> {
 
 /// Bodies with nodes at the same places that no contact or tie connects: meshes that were not merged.
 pub fn unmerged(shape: &DeckShape) -> Vec<RunFinding> {
-    // A surface may have faces of several bodies: then its slave nodes tell.
+    // If a surface has faces of several bodies, its slave nodes decide.
     let connected = |groups: [usize; 2], nodes: &[[usize; 2]]| {
         let nodes: BTreeSet<usize> = nodes.iter().flatten().copied().collect();
         shape.pairs.iter().chain(&shape.ties).any(|own| {
