@@ -218,11 +218,9 @@ fn phases(problem: &InterfaceProblem, period: u32) -> Option<Vec<Phase>> {
         let changed: Vec<usize> = (0..records.len()).filter(changed).collect();
         let explains = phase < MOST_PHASES && !changed.is_empty();
         let old = explains.then(|| trials.solve_states(before(phase)));
-        let all = old
-            .flatten()
-            .and_then(|old| influences(problem, &old, &states[phase], &changed))
-            .unwrap_or_default();
-        let pushes = changed.iter().zip(&all);
+        let old = old.flatten();
+        let all = old.and_then(|old| influences(problem, &old, &states[phase], &changed));
+        let pushes = changed.iter().zip(all.iter().flatten());
         let pushes = pushes
             .filter_map(|(&node, all)| push(all, before(phase), &states[phase], &records, node))
             .collect();
