@@ -599,7 +599,7 @@ impl Debugger {
             return false;
         };
         let before = session.background().is_busy();
-        if self.app.panes.focus == Pane::Decision {
+        if matches!(self.app.panes.focus, Pane::Decision | Pane::Contact) {
             session.demand_pushes();
         }
         session.look(self.app.selected);

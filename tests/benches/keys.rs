@@ -77,6 +77,7 @@ fn row(refine: &str) {
     }));
     let again = median((0..SOME).map(|_| does(&mut session, &to_and_fro)));
     let began = Instant::now();
+    session.demand_pushes();
     session.look(slaves / 2);
     session.background_mut().wait();
     let pushes = began.elapsed().as_secs_f64();

@@ -10,7 +10,8 @@
 //!
 //! The thread has a separate solver for the session's scene. If the session's solver already has the frozen
 //! problem, the thread borrows it, so that nothing is factored twice. A large solver is dropped when the queue
-//! is empty, so that the session needs no more memory than a run, and computes pushes only on demand.
+//! is empty, so that the session needs no more memory than a run. Pushes between many slave nodes, or that need a large solver,
+//! are computed on demand.
 //!
 //! Pushes and examinations are cached by position (branch, step on its line), because the state at a position
 //! never changes.
@@ -45,6 +46,8 @@ use stickslip_scene::solver::solver;
 const KEPT: usize = 512;
 /// A solver that takes more bytes than this is dropped when idle.
 const LARGE: f64 = 2e8;
+/// With more slave nodes, pushes are computed only on demand: their equations are dense.
+const MANY: usize = 100;
 /// Last line of a page whose analysis was interrupted.
 const STOPPED: &str = "interrupted; :census starts it again";
 /// The remedies tried from one position so far.
@@ -499,13 +502,16 @@ impl Helper {
     }
 
     /// The pushes on a node: from the session's solver if it has the frozen problem, otherwise from our own. The outer `None` if
-    /// ours is large and not `demanded`.
+    /// there are many slave nodes or ours is large, and they are not `demanded`.
     fn pushes(
         &mut self,
         slave: usize,
         way: PushPath,
         demanded: bool,
     ) -> Option<Option<Vec<NodePush>>> {
+        if self.model.contacts.len() > MANY && !demanded {
+            return None;
+        }
         let way = Arc::new(way);
         let theirs = way.clone();
         // The session's solver only repeats the steps; the expensive part runs on this thread.
