@@ -145,5 +145,3 @@ pub use step::watch::StabilityLoss;
 pub use step::{Event, Failure, Outcome, Solver, State, Status, Stepper};
 pub use stickslip_linalg as linalg;
 pub use stickslip_linalg::executor;
-#[cfg(mutants)]
-pub use stickslip_linalg::mutants;

@@ -294,10 +294,6 @@ pub fn attempt(
 /// Whether an increment was accepted at or beyond the failed load.
 fn is_there(state: &State, event: &Event, (leg, load): (usize, f64)) -> bool {
     let accepted = matches!(event.outcome, Outcome::Increment { .. });
-    #[cfg(mutants)]
-    if stickslip_core::mutants::is_active("remedy-ends-at-its-first-increment") {
-        return accepted;
-    }
     let close = (event.load_factor - load).abs() <= 1e-9 * state.controls.increment;
     accepted && (state.status == Status::Finished || state.start.leg > leg || close)
 }
