@@ -1,7 +1,7 @@
 //! The faults of the mutation bench fit the sources, and its table has each of them with a test that exists.
 
 use super::{imports::rust_files, top};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::PathBuf;
 

@@ -198,7 +198,7 @@ fn attempt_restart(
     }
     let mut stepper = restart::changed(spec, state)?;
     let began = Instant::now();
-    let run = restart::restart(&mut stepper, state, stop)?;
+    let run = restart::restart(&mut stepper, state, restart::BUDGET, stop)?;
     let count = |n: u64| u32::try_from(n).unwrap_or(u32::MAX);
     let mut trial = RemedyTrial::new(remedy);
     trial.seconds = began.elapsed().as_secs_f64();
