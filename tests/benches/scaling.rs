@@ -9,7 +9,6 @@
 mod peak;
 
 use peak::peak;
-use std::fs;
 use std::sync::Arc;
 use std::time::Instant;
 use stickslip::executor::{Executor, SequentialExecutor};

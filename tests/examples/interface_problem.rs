@@ -13,7 +13,9 @@ use std::sync::Arc;
 use stickslip::interface::census::census;
 use stickslip::interface::problem::AssumedMode;
 use stickslip::interface::trials::Trials;
-use stickslip::model::{BodyKind, Component, Contact, Form, Friction, Linear, Model, Surface};
+use stickslip::model::{
+    BodyKind, Component, Contact, Form, Friction, Linear, Model, Settings, Surface, Touch,
+};
 use stickslip::step::Stepper;
 use stickslip::step::drive::{RunEnd, Until};
 
@@ -57,6 +59,11 @@ pub fn run(out: &mut impl Write) -> Result<(), Box<dyn Error>> {
             .load(node, Component::X, x)
             .load(node, Component::Y, y);
     }
+    // One step of Coulomb's law.
+    model.settings(Settings {
+        touch: Touch::Start,
+        ..Settings::default()
+    });
     let mut stepper = Stepper::new(Arc::new(model.build()?));
 
     // The problem of the first major iteration, which aims at the whole load.
