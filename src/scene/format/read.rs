@@ -200,6 +200,7 @@ fn message(error: &ron::Error, what: &str) -> String {
             )
         }
         E::ExceededRecursionLimit => format!("brackets are nested too deeply for a {what}"),
+        E::ExpectedComma => "expected comma or closing bracket".to_owned(),
         E::Eof => "the file ends too early; a bracket or a quote is not closed".to_owned(),
         E::TrailingCharacters => {
             format!("unexpected text after the closing bracket of the {what}")
