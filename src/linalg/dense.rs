@@ -1,6 +1,7 @@
 //! Dense LU for systems of the interface's size.
 
 use super::check::{SolveError, fill_probe, largest};
+use super::executor::{Executor, SequentialExecutor};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::lu::partial_pivoting::factor::{lu_in_place, lu_in_place_scratch};
 use faer::linalg::lu::partial_pivoting::solve::{
@@ -9,6 +10,9 @@ use faer::linalg::lu::partial_pivoting::solve::{
 use faer::linalg::matmul::matmul;
 use faer::perm::PermRef;
 use faer::{Accum, MatMut, MatRef, Par};
+
+/// Columns of right-hand sides that are solved together. The blocks do not depend on the executor, and so neither do the bits.
+const BLOCK: usize = 128;
 
 /// Factors of a small dense matrix, with preallocated memory for repeated factorization.
 ///
@@ -20,7 +24,8 @@ pub struct DenseFactors {
     row_scale: Vec<f64>,
     perm: Vec<usize>,
     perm_inverse: Vec<usize>,
-    memory: MemBuffer,
+    /// One for each block of right-hand sides.
+    memory: Vec<MemBuffer>,
     probe: Vec<f64>,
 }
 
@@ -31,15 +36,18 @@ impl DenseFactors {
     /// [`SolveError::OutOfMemory`].
     pub fn new(n: usize, columns: usize) -> Result<Self, SolveError> {
         let request = lu_in_place_scratch::<usize, f64>(n, n, Par::Seq, Default::default()).or(
-            solve_in_place_scratch::<usize, f64>(n, columns.max(1), Par::Seq),
+            solve_in_place_scratch::<usize, f64>(n, columns.clamp(1, BLOCK), Par::Seq),
         );
+        let memory = (0..columns.div_ceil(BLOCK).max(1)).map(|_| MemBuffer::try_new(request));
         Ok(DenseFactors {
             n,
             values: vec![0.0; n * n],
             row_scale: vec![1.0; n],
             perm: vec![0; n],
             perm_inverse: vec![0; n],
-            memory: MemBuffer::try_new(request).map_err(|_| SolveError::OutOfMemory)?,
+            memory: memory
+                .collect::<Result<_, _>>()
+                .map_err(|_| SolveError::OutOfMemory)?,
             probe: vec![0.0; n],
         })
     }
@@ -77,22 +85,32 @@ impl DenseFactors {
             &mut self.perm,
             &mut self.perm_inverse,
             Par::Seq,
-            MemStack::new(&mut self.memory),
+            MemStack::new(&mut self.memory[0]),
             Default::default(),
         );
     }
 
-    /// Solves A X = B for the columns of B, which are consecutive in `b`; X replaces B.
+    /// Solves A X = B for the columns of B, which are consecutive in `b`; X replaces B. There must not be more columns than
+    /// [`DenseFactors::new`] was given.
     ///
     /// # Errors
     /// [`SolveError::Singular`] if X is not finite.
     pub fn solve(&mut self, b: &mut [f64]) -> Result<(), SolveError> {
-        for column in b.chunks_exact_mut(self.n.max(1)) {
-            for (b, scale) in column.iter_mut().zip(&self.row_scale) {
+        self.solve_with(&SequentialExecutor, b)
+    }
+
+    /// The same with an executor, for blocks of columns.
+    ///
+    /// # Errors
+    /// [`SolveError::Singular`] if X is not finite.
+    pub fn solve_with(&mut self, executor: &dyn Executor, b: &mut [f64]) -> Result<(), SolveError> {
+        let (scale, size) = (&self.row_scale, self.n.max(1));
+        for column in b.chunks_exact_mut(size) {
+            for (b, scale) in column.iter_mut().zip(scale) {
                 *b *= scale;
             }
         }
-        self.apply_inverse(b);
+        self.apply_inverse(executor, b);
         finite(b)
     }
 
@@ -110,7 +128,7 @@ impl DenseFactors {
             PermRef::new_checked(&self.perm, &self.perm_inverse, n),
             MatMut::from_column_major_slice_mut(b, n, columns),
             Par::Seq,
-            MemStack::new(&mut self.memory),
+            MemStack::new(&mut self.memory[0]),
         );
         for column in b.chunks_exact_mut(n.max(1)) {
             for (b, scale) in column.iter_mut().zip(&self.row_scale) {
@@ -124,25 +142,49 @@ impl DenseFactors {
     pub fn inverse_norm(&mut self) -> f64 {
         let mut probe = std::mem::take(&mut self.probe);
         fill_probe(&mut probe);
-        self.apply_inverse(&mut probe);
+        self.apply_inverse(&SequentialExecutor, &mut probe);
         let norm = largest(&probe);
         self.probe = probe;
         norm
     }
 
-    fn apply_inverse(&mut self, x: &mut [f64]) {
+    fn apply_inverse(&mut self, executor: &dyn Executor, x: &mut [f64]) {
         let n = self.n;
         let factors = MatRef::from_column_major_slice(&self.values, n, n);
-        let columns = x.len().checked_div(n).unwrap_or(0);
-        solve_in_place(
-            factors,
-            factors,
-            PermRef::new_checked(&self.perm, &self.perm_inverse, n),
-            MatMut::from_column_major_slice_mut(x, n, columns),
-            Par::Seq,
-            MemStack::new(&mut self.memory),
-        );
+        let perm = PermRef::new_checked(&self.perm, &self.perm_inverse, n);
+        let solve = |x: &mut [f64], memory: &mut MemBuffer| {
+            let columns = x.len().checked_div(n).unwrap_or(0);
+            solve_in_place(
+                factors,
+                factors,
+                perm,
+                MatMut::from_column_major_slice_mut(x, n, columns),
+                Par::Seq,
+                MemStack::new(memory),
+            );
+        };
+        in_blocks(executor, x, n.max(1) * BLOCK, &mut self.memory, &solve);
     }
+}
+
+/// Does a job on every block of `size` numbers, with separate memory.
+fn in_blocks(
+    executor: &dyn Executor,
+    x: &mut [f64],
+    size: usize,
+    memory: &mut [MemBuffer],
+    job: &(dyn Fn(&mut [f64], &mut MemBuffer) + Sync),
+) {
+    let half = x.len().div_ceil(size) / 2;
+    if half == 0 {
+        return job(x, &mut memory[0]);
+    }
+    let (first, second) = x.split_at_mut(half * size);
+    let (own, others) = memory.split_at_mut(half);
+    executor.join(
+        &mut || in_blocks(executor, first, size, own, job),
+        &mut || in_blocks(executor, second, size, others, job),
+    );
 }
 
 fn finite(x: &[f64]) -> Result<(), SolveError> {
@@ -155,6 +197,7 @@ fn finite(x: &[f64]) -> Result<(), SolveError> {
 /// C = C − A B. Each matrix is column-major and given with its column stride; the sizes are [rows of A and C, columns of A and
 /// rows of B, columns of B and C].
 pub fn subtract_product(
+    executor: &dyn Executor,
     c: (&mut [f64], usize),
     a: (&[f64], usize),
     b: (&[f64], usize),
@@ -162,6 +205,16 @@ pub fn subtract_product(
 ) {
     if rows == 0 || inner == 0 || columns == 0 {
         return;
+    }
+    let half = columns.div_ceil(BLOCK) / 2 * BLOCK;
+    if half > 0 {
+        let (first, second) = c.0.split_at_mut(half * c.1);
+        let (own, others) = b.0.split_at(half * b.1);
+        let sizes = [half, columns - half].map(|columns| [rows, inner, columns]);
+        return executor.join(
+            &mut || subtract_product(executor, (first, c.1), a, (own, b.1), sizes[0]),
+            &mut || subtract_product(executor, (second, c.1), a, (others, b.1), sizes[1]),
+        );
     }
     matmul(
         MatMut::from_column_major_slice_with_stride_mut(c.0, rows, columns, c.1),

@@ -8,8 +8,6 @@
 
 use super::check::SolveError;
 use super::graph::Graph;
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
 
 /// A part is not cut if it has fewer unknowns than this, or fewer than this multiple of its cut.
 const LEAST: usize = 48;
@@ -29,6 +27,8 @@ struct Dissection<'a> {
     level: Vec<usize>,
     /// Rank of each group's x and y; empty if the positions are unknown.
     ranks: [Vec<usize>; 2],
+    /// By height: the unknowns of the groups below that have no neighbours beyond it.
+    closing: Vec<usize>,
     order: Vec<usize>,
 }
 
@@ -48,6 +48,7 @@ pub(super) fn order(graph: &Graph, positions: &[[f64; 2]]) -> Result<Vec<usize>,
         parts: 1,
         level: vec![usize::MAX; count],
         ranks: [0, 1].map(|axis| ranks(positions, axis)),
+        closing: vec![0; count],
         order: Vec::with_capacity(count),
     };
     dissection.put_in_order((0..count).collect())?;
@@ -161,15 +162,19 @@ impl Dissection<'_> {
     }
 
     /// The lightest cut of a part, sorted by these heights, near its middle.
-    fn lightest(&self, found: &[usize], which: usize) -> Option<Cut> {
+    fn lightest(&mut self, found: &[usize], which: usize) -> Option<Cut> {
+        let mut closing = std::mem::take(&mut self.closing);
         let heights = self.heights(which);
         let all = self.weight(found);
-        // Groups with neighbours beyond the current height, by the height up to which these reach.
-        let mut open = BinaryHeap::new();
         let (mut below, mut reaching) = (0, 0);
         let mut best: Option<Cut> = None;
         for level in found.chunk_by(|&a, &b| heights[a] == heights[b]) {
             let rank = heights[level[0]];
+            let closed = std::mem::take(&mut closing[rank]);
+            if ((all - below) as f64) < HALF * all as f64 {
+                continue;
+            }
+            reaching -= closed;
             for &group in level {
                 let own = self.graph.members(group).len();
                 let same = |&&other: &&usize| self.part[other] == self.part[group];
@@ -178,14 +183,8 @@ impl Dissection<'_> {
                 below += own;
                 if reach > rank {
                     reaching += own;
-                    open.push((Reverse(reach), own));
+                    closing[reach] += own;
                 }
-            }
-            while let Some(&(Reverse(reach), own)) = open.peek()
-                && reach <= rank
-            {
-                reaching -= own;
-                open.pop();
             }
             // A level is weighed whole: nearly all of it has neighbours beyond.
             let weight = match which {
@@ -202,6 +201,7 @@ impl Dissection<'_> {
                 });
             }
         }
+        self.closing = closing;
         best
     }
 }

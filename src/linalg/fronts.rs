@@ -18,13 +18,10 @@
 //!
 //! In the forward substitution, too, a front is repeated only if its factors or the right-hand side of its rows have changed.
 
-use super::check::{SolveError, are_equal};
+use super::check::SolveError;
 use super::front::{Front, STEPS, substitute, substitute_back, subtract, subtract_all};
 use super::pattern::Pattern;
 use super::tree::{Node, Tree};
-
-/// Number of values that are compared at once with those factored last.
-const RUN: usize = 64;
 
 /// A node of the tree, with its factors.
 struct FactoredNode {
@@ -120,12 +117,13 @@ impl Fronts {
         })
     }
 
-    /// Factors the matrix with these values, in pattern order.
+    /// Factors the matrix with these values, in pattern order. If only some may differ from those of the last call, `only` lists
+    /// their indices.
     ///
     /// # Errors
     /// [`SolveError::Singular`] if no pivot is left.
-    pub fn factor(&mut self, values: &[f64]) -> Result<(), SolveError> {
-        self.find_changes(values);
+    pub fn factor(&mut self, values: &[f64], only: Option<&[usize]>) -> Result<(), SolveError> {
+        self.find_changes(values, only);
         self.ready = false;
         self.stack.clear();
         for k in 0..self.fronts.len() {
@@ -162,24 +160,22 @@ impl Fronts {
 
     /// Finds the fronts whose own entries have changed. If a changed front's children have no stored remainders, all fronts are
     /// factored.
-    fn find_changes(&mut self, values: &[f64]) {
+    fn find_changes(&mut self, values: &[f64], only: Option<&[usize]>) {
         let mut all = !self.ready;
         self.fronts
             .iter_mut()
             .for_each(|front| front.changed = false);
-        let old = self.values.chunks_mut(RUN).zip(values.chunks(RUN));
-        for ((old, new), owners) in old.zip(self.owners.chunks(RUN)) {
-            if are_equal(old, new) {
-                continue;
+        let mut compare = |k: usize| {
+            if self.values[k] != values[k] {
+                self.values[k] = values[k];
+                let front = &mut self.fronts[self.owners[k] as usize];
+                front.changed = true;
+                all |= !front.node.changing;
             }
-            for ((old, &new), &owner) in old.iter_mut().zip(new).zip(owners) {
-                if *old != new {
-                    *old = new;
-                    let front = &mut self.fronts[owner as usize];
-                    front.changed = true;
-                    all |= !front.node.changing;
-                }
-            }
+        };
+        match only {
+            Some(only) => only.iter().for_each(|&k| compare(k)),
+            None => (0..values.len()).for_each(compare),
         }
         if all {
             self.fronts
@@ -482,7 +478,7 @@ mod tests {
 
         /// The solution for a fixed right-hand side.
         fn solution(&self, fronts: &mut Fronts) -> Vec<f64> {
-            fronts.factor(&self.values).unwrap();
+            fronts.factor(&self.values, None).unwrap();
             let mut x: Vec<f64> = (0..self.pattern.size()).map(|i| (i as f64).cos()).collect();
             fronts.solve(&mut x);
             x
@@ -612,7 +608,7 @@ mod tests {
             }
         }
         let mut fronts = case.fronts();
-        assert_eq!(fronts.factor(&case.values), Err(SolveError::Singular));
+        assert_eq!(fronts.factor(&case.values, None), Err(SolveError::Singular));
         let case = Case::grid(3, 2, 0.0, false);
         assert!(case.error(&mut fronts) < 1e-10, "and the next one is not");
     }

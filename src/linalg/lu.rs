@@ -55,9 +55,10 @@ pub struct Factors {
     residual: Vec<f64>,
     sizes: Vec<f64>,
     correction: Vec<f64>,
-    /// Rows from this one on are rescaled in each factorization; with their entries: index, row, column.
+    /// Rows from this one on are rescaled in each factorization; with the indices of their entries, and their rows and columns.
     first_own: usize,
-    own: Vec<(usize, usize, usize)>,
+    own: Vec<usize>,
+    own_places: Vec<(usize, usize)>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -122,6 +123,7 @@ impl Factors {
             correction: vec![0.0; n],
             first_own: n,
             own: Vec::new(),
+            own_places: Vec::new(),
         }
     }
 
@@ -143,10 +145,15 @@ impl Factors {
             self.first_own = first;
             let entries = self.pattern.iter().enumerate();
             let own = entries.filter(|(_, (row, _))| *row >= first);
-            self.own.clear();
-            self.own
-                .extend(own.map(|(place, (row, col))| (place, row, col)));
+            (self.own, self.own_places) = own.unzip();
         }
+    }
+
+    /// Copies values of the rows and columns from the `first` of [`Factors::scale`] on.
+    pub fn copy_last(&self, from: &[f64], to: &mut [f64]) {
+        self.own.iter().for_each(|&k| to[k] = from[k]);
+        let columns = self.pattern.col_ptr[self.first_own]..;
+        to[columns.clone()].copy_from_slice(&from[columns]);
     }
 
     /// Factors the matrix with these values (in pattern order), using the scale from [`Factors::scale`].
@@ -156,9 +163,11 @@ impl Factors {
     /// [`Factors::inverse_norm`].
     pub fn factor(&mut self, values: &[f64]) -> Result<(), SolveError> {
         self.used = LuKind::Neither;
-        self.take(values);
+        let only_own = self.take(values);
         if let Some(fronts) = &mut self.fronts
-            && fronts.factor(&self.scaled).is_ok()
+            && fronts
+                .factor(&self.scaled, only_own.then_some(&self.own[..]))
+                .is_ok()
         {
             self.used = LuKind::Fronts;
             return Ok(());
@@ -332,30 +341,31 @@ impl Factors {
         self.row_scale.copy_from_slice(&self.col_scale);
     }
 
-    /// Takes the values and scales them; if only the own rows have changed, only these.
-    fn take(&mut self, values: &[f64]) {
-        for &(place, ..) in &self.own {
-            self.values[place] = values[place];
+    /// Takes the values and scales them; returns whether only the own rows have changed.
+    fn take(&mut self, values: &[f64]) -> bool {
+        for &k in &self.own {
+            self.values[k] = values[k];
         }
         if self.applied && are_equal(&self.values, values) {
             self.scale_own_rows();
-            for &(place, row, col) in &self.own {
-                self.scaled[place] = self.values[place] * self.col_scale[col] * self.row_scale[row];
+            for (&k, &(row, col)) in self.own.iter().zip(&self.own_places) {
+                self.scaled[k] = self.values[k] * self.col_scale[col] * self.row_scale[row];
             }
-            return;
+            return true;
         }
         self.values.copy_from_slice(values);
         self.scale_own_rows();
         self.apply_scale();
         self.applied = true;
+        false
     }
 
     /// Divides each row from `first_own` on by about its largest entry.
     fn scale_own_rows(&mut self) {
         let sizes = &mut self.sizes[self.first_own..];
         sizes.fill(0.0);
-        for &(place, row, col) in &self.own {
-            let size = (self.values[place] * self.col_scale[col]).abs();
+        for (&k, &(row, col)) in self.own.iter().zip(&self.own_places) {
+            let size = (self.values[k] * self.col_scale[col]).abs();
             let largest = &mut sizes[row - self.first_own];
             *largest = largest.max(size);
         }

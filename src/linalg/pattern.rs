@@ -13,20 +13,28 @@ pub struct Pattern {
 
 impl Pattern {
     /// The pattern of an n by n matrix with these `(row, column)` entries, in any order, possibly repeated.
-    pub fn new(n: usize, mut entries: Vec<(usize, usize)>) -> Self {
-        entries.sort_unstable_by_key(|&(row, col)| (col, row));
-        entries.dedup();
-        let mut col_ptr = vec![0; n + 1];
-        for &(_, col) in &entries {
-            col_ptr[col + 1] += 1;
+    pub fn new(n: usize, entries: Vec<(usize, usize)>) -> Self {
+        let (starts, mut rows) = lists(n, || entries.iter().map(|&(row, col)| (col, row)));
+        drop(entries);
+        let mut col_ptr = Vec::with_capacity(n + 1);
+        col_ptr.push(0);
+        let mut end = 0;
+        for range in starts.windows(2) {
+            rows[range[0]..range[1]].sort_unstable();
+            for k in range[0]..range[1] {
+                if k == range[0] || rows[k] != rows[end - 1] {
+                    rows[end] = rows[k];
+                    end += 1;
+                }
+            }
+            col_ptr.push(end);
         }
-        for col in 0..n {
-            col_ptr[col + 1] += col_ptr[col];
-        }
+        rows.truncate(end);
+        rows.shrink_to_fit();
         Pattern {
             n,
             col_ptr,
-            row_idx: entries.into_iter().map(|(row, _)| row).collect(),
+            row_idx: rows,
         }
     }
 

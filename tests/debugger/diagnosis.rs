@@ -127,7 +127,7 @@ fn influences_add_up_to_what_happened() {
                 trials.solve_states(&pair[1]).unwrap(),
             );
             for target in 0..problem.nodes.len() {
-                let all = influences(&problem, &pair[0], &pair[1], &[target]).unwrap();
+                let all = influences(&problem, &old, &pair[1], &[target]).unwrap();
                 let all = &all[0];
                 let f_n: f64 = all.iter().map(|i| i.f_n).sum();
                 let gap: f64 = all.iter().map(|i| i.gap).sum();

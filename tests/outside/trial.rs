@@ -8,7 +8,7 @@ use stickslip::model::Model;
 use stickslip::model::{AtLimit, Component, SlipCount, Sticking, TieRule};
 use stickslip::model::{BodyKind, Form, Monitor, MonitorQuantity};
 use stickslip::scene::Scene;
-use stickslip::step::event::{Failure, Outcome};
+use stickslip::step::event::{Failure, MotionEvent, Outcome};
 use stickslip::step::recovery::fallback::Fallback;
 use stickslip::step::state::IncrementStart;
 use stickslip::step::stepper::Stepper;
@@ -105,7 +105,10 @@ impl Trial {
     fn run(&mut self, scene: &Scene) {
         let model = Arc::new(with_reactions(scene));
         let mut stepper = Stepper::new(model.clone());
-        let mut before = seen(&model, &stepper.state().start, &[]);
+        // The last accepted state, and the end of the last step of a damped motion from there.
+        let mut accepted = seen(&model, &stepper.state().start, &[]);
+        let mut before = accepted.clone();
+        let mut in_motion = Vec::new();
         let mut scales = Scales {
             length: model.length,
             force: ROUNDING * stiffness(&model),
@@ -113,14 +116,24 @@ impl Trial {
         let mut passages = Passages::default();
         let mut fallback = None;
         for _ in 0..PATIENCE {
+            let motion = stepper.state().recovery.motion;
             if stepper.step().is_none() {
                 self.end = End::Finished;
                 return;
             }
-            match &stepper.event().outcome {
-                Outcome::Increment { .. } => self.fallbacks.extend(fallback.take()),
+            let drag = match &stepper.event().outcome {
+                Outcome::Increment { jumped, .. } => {
+                    self.fallbacks.extend(fallback.take());
+                    if !jumped {
+                        before.clone_from(&accepted);
+                    }
+                    None
+                }
+                Outcome::Motion(MotionEvent::Step { .. }) => motion.map(|motion| motion.drag),
                 Outcome::Fallback { by, .. } => {
                     (fallback, passages) = (Some(*by), Passages::default());
+                    before.clone_from(&accepted);
+                    in_motion.clear();
                     continue;
                 }
                 Outcome::Failed(failure) => {
@@ -136,12 +149,15 @@ impl Trial {
                     continue;
                 }
                 _ => continue,
-            }
+            };
             passages = Passages::default();
             let mut reactions = Vec::new();
             stepper.monitors(&mut reactions);
             let state = stepper.state();
-            let now = seen(&model, &state.start, &reactions);
+            let mut now = seen(&model, &state.start, &reactions);
+            if let Some(drag) = drag {
+                now.brake(&model, &before, drag);
+            }
             let pulls = now.pulls.iter().map(|pull| norm(pull.force));
             let forces = now.forces.iter().map(|f| norm(*f));
             // A node that floats balances its load to round-off.
@@ -160,15 +176,19 @@ impl Trial {
             };
             let friction = &state.controls.friction;
             let verdict = judge(&model, [&before, &now], friction, &brought, scales);
-            self.increments += 1;
-            self.vertices += verdict.vertices;
-            self.unexplained += verdict.unexplained;
             let wrong = |breach| Wrong {
-                increment: self.increments,
+                increment: self.increments + 1,
                 load_factor: state.start.load_factor,
                 breach,
             };
-            self.wrong.extend(verdict.breaches.into_iter().map(wrong));
+            in_motion.extend(verdict.breaches.into_iter().map(wrong));
+            if drag.is_none() {
+                self.increments += 1;
+                self.vertices += verdict.vertices;
+                self.unexplained += verdict.unexplained;
+                self.wrong.append(&mut in_motion);
+                accepted.clone_from(&now);
+            }
             before = now;
         }
         self.end = End::Endless;
@@ -238,6 +258,22 @@ fn seen(model: &Model, state: &IncrementStart, reactions: &[f64]) -> Seen {
         pulls: (0..model.nodes.len()).map(pull).collect(),
         forces: state.nodes.iter().map(|node| node.force()).collect(),
         positions,
+    }
+}
+
+impl Seen {
+    /// Adds the forces of a viscosity over the time step, `drag`, on the nodes that have moved since `before`.
+    fn brake(&mut self, model: &Model, before: &Seen, drag: f64) {
+        let moved = self.positions.iter().zip(&before.positions);
+        for ((pull, (now, before)), first) in
+            self.pulls.iter_mut().zip(moved).zip(&model.dofs.first)
+        {
+            for axis in 0..2 {
+                if model.dofs.equation[first + axis].is_some() {
+                    pull.force[axis] -= drag * (now[axis] - before[axis]);
+                }
+            }
+        }
     }
 }
 

@@ -6,7 +6,7 @@ use crate::outside::chain::{Chain, Place, Point, Seen as Sight};
 use crate::outside::families::{FAMILIES, draw};
 use crate::outside::judge::{Law, Pull, Scales, Seen, Verdict, judge};
 use crate::outside::tally;
-use crate::outside::trial::End;
+use crate::outside::trial::{End, attempt};
 use stickslip::model::Friction;
 use stickslip::scene::Scene;
 use stickslip::step::recovery::fallback::Fallback;
@@ -27,6 +27,19 @@ fn no_accepted_increment_of_a_random_scene_is_wrong() {
     assert_eq!(rows.iter().filter(ended).count() as u64, SCENES);
     let accepted: usize = rows.iter().map(|row| row.trial.increments).sum();
     assert!(accepted > 500, "only {accepted} increments were judged");
+}
+
+/// From its start to its end, a damped motion in which nodes slide and stick again breaks the law of friction; no step does.
+#[test]
+fn damped_motions_are_judged_step_by_step() {
+    let file = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/tests/findings/slides-and-sticks-again-in-motion.ron"
+    );
+    let trial = attempt(&Scene::open(file, &[]).unwrap());
+    assert_eq!(trial.end, End::Finished);
+    assert!(trial.fallbacks.contains(&Fallback::Release));
+    assert!(trial.wrong.is_empty(), "{:?}", trial.wrong);
 }
 
 #[test]

@@ -116,6 +116,16 @@ fn a_damped_motion_finds_the_next_equilibrium() {
 }
 
 #[test]
+fn a_damped_motion_in_which_nodes_slide_and_stick_again_is_a_jump() {
+    let searched = run("slides-and-sticks-again-in-motion", &[]);
+    assert_eq!(searched.failure, None);
+    let motions = searched.found.iter();
+    let motions = motions.filter(|by| **by == Fallback::Release).count();
+    assert!(motions > 0, "{:?}", searched.found);
+    assert!(searched.jumps >= motions, "{} of {motions}", searched.jumps);
+}
+
+#[test]
 fn no_search_spends_more_than_its_limit() {
     let name = "moves-to-another-equilibrium";
     let whole = run(name, &[]).spent;

@@ -4,7 +4,7 @@
 //! entries are assembled in parallel ([`Executor`]), and so are the responses of many elements of one body. Each element adds to the
 //! same entries in the same order, independent of the executor.
 
-use crate::executor::{Executor, SequentialExecutor};
+use crate::executor::{Executor, SequentialExecutor, each};
 use crate::fem::beam::{self, Section};
 use crate::fem::continuum;
 use crate::fem::element::{Element, Previous};
@@ -235,9 +235,12 @@ impl Assembly {
             let many = group.elements.len() >= MANY;
             group.rooms = vec![self.room.clone(); if many { BATCH } else { 1 }];
         }
-        for placed in &mut self.elements {
-            placed.bind(dofs, pattern, half);
-        }
+        let mut batches: Vec<_> = self.elements.chunks_mut(MANY).collect();
+        each(&*self.executor, &mut batches, &|batch| {
+            batch
+                .iter_mut()
+                .for_each(|placed| placed.bind(dofs, pattern, half));
+        });
         for matrix in &mut self.matrices {
             matrix.bind(dofs, pattern);
         }

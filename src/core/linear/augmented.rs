@@ -71,7 +71,13 @@ impl System {
 
     /// Stiffness and out-of-balance forces without the interface.
     pub(super) fn start_values(&mut self) {
-        self.values.copy_from_slice(&self.stiffness);
+        match &self.whole {
+            Some(factors) if self.copied => {
+                factors.copy_last(&self.stiffness, &mut self.values);
+            }
+            _ => self.values.copy_from_slice(&self.stiffness),
+        }
+        self.copied = true;
         self.start_rhs();
     }
 

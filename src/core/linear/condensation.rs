@@ -196,7 +196,7 @@ impl Condensation {
         self.dense.factor(&self.matrix);
         self.push(interfaces, frames, k);
         self.dense.solve(&mut self.start)?;
-        self.dense.solve(&mut self.motions)?;
+        self.dense.solve_with(&*self.executor, &mut self.motions)?;
         self.respond(interfaces, frames, out);
         Ok(self.dense.inverse_norm())
     }
@@ -226,12 +226,14 @@ impl Condensation {
         let (at_rest, given) = self.start.split_at_mut(m);
         self.dense.factor(&self.inner);
         self.dense.solve(at_rest)?;
-        self.dense.solve(motions)?;
+        self.dense.solve_with(&*self.executor, motions)?;
         out.start.copy_from_slice(given);
         if m > 0 {
             let mixed = (&self.matrix[m..], c);
-            subtract_product((&mut out.response, z), mixed, (&*motions, m), [z, m, z]);
-            subtract_product((&mut out.start, z), mixed, (&*at_rest, m), [z, m, 1]);
+            let (executor, response) = (&*self.executor, &mut out.response);
+            subtract_product(executor, (response, z), mixed, (&*motions, m), [z, m, z]);
+            let start = (&mut out.start[..], z);
+            subtract_product(executor, start, mixed, (&*at_rest, m), [z, m, 1]);
         }
         out.response.iter_mut().for_each(|k| *k = -*k);
         Ok(self.dense.inverse_norm())

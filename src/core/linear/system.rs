@@ -71,6 +71,8 @@ pub struct System {
     pub(super) dragged: bool,
     /// Whether `whole` is scaled for the current linearisation.
     pub(super) scaled: bool,
+    /// Whether `values` differ from `stiffness` in the interface's rows and columns only.
+    pub(super) copied: bool,
     pub(super) bodies: Option<Condensation>,
     /// Processes bodies in parallel.
     pub(super) executor: Arc<dyn Executor>,
@@ -137,6 +139,7 @@ impl System {
             done: Work::default(),
             dragged: false,
             scaled: false,
+            copied: false,
             bodies: None,
             executor,
             estimate: Estimate::from_model(model),
@@ -214,6 +217,7 @@ impl System {
         }
         self.condensed.fresh = false;
         self.scaled = false;
+        self.copied = false;
         self.place(model, at.u);
         for (interface, (node, slave)) in self
             .interfaces
@@ -472,6 +476,7 @@ impl System {
     /// Adds the effect of rotating and moving interaction forces to the stiffness, if the settings request it; once per
     /// linearisation, when the state has its final forces.
     pub fn turn(&mut self, model: &Model, at: &LinearisationPoint<'_>) {
+        self.copied = false;
         self.turn_into(model, at, RotationEffect::Both);
     }
 

@@ -19,8 +19,8 @@ use crate::step::recovery::left_out::OmittedStep;
 use crate::strategy::{self, AnyMethod};
 use crate::{
     ContactState, Cycle, Event, Failure, InterfaceProblem, Intervention, Method, Model,
-    NodeKinematics, Norms, Outcome, Refusal, Singular, SolveResult, Source, Stability, State,
-    Status, Strategy, Work,
+    NodeIncrement, NodeKinematics, Norms, Outcome, Refusal, Singular, SolveResult, Source,
+    Stability, State, Status, Strategy, Work,
 };
 use std::sync::Arc;
 
@@ -244,6 +244,11 @@ impl Stepper {
     /// The degree of freedom with the largest out-of-balance force in the last linearisation, and that force; `None` if unknown.
     pub fn largest_residual(&self) -> Option<(usize, f64)> {
         self.now.source.largest_residual()
+    }
+
+    /// Increments of a contact's forces and motion in the last minor iteration.
+    pub fn increment(&self, contact: usize) -> NodeIncrement {
+        self.now.source.increment(contact)
     }
 
     /// Whether the minor iterations are solved on the condensed interface.

@@ -217,9 +217,10 @@ fn phases(problem: &InterfaceProblem, period: u32) -> Option<Vec<Phase>> {
         let changed = |s: &usize| records[*s].decision.changes();
         let changed: Vec<usize> = (0..records.len()).filter(changed).collect();
         let explains = phase < MOST_PHASES && !changed.is_empty();
-        let all = explains.then(|| influences(problem, before(phase), &states[phase], &changed));
-        let all = all.flatten().unwrap_or_default();
-        let pushes = changed.iter().zip(&all);
+        let old = explains.then(|| trials.solve_states(before(phase)));
+        let old = old.flatten();
+        let all = old.and_then(|old| influences(problem, &old, &states[phase], &changed));
+        let pushes = changed.iter().zip(all.iter().flatten());
         let pushes = pushes
             .filter_map(|(&node, all)| push(all, before(phase), &states[phase], &records, node))
             .collect();

@@ -7,6 +7,7 @@ use crate::explain::names::slave;
 use crate::explain::strain;
 use stickslip_core::interface::census;
 use stickslip_core::linear::singular::LooseMotion;
+use stickslip_core::model::Contact;
 use stickslip_core::words::{counted, times};
 use stickslip_core::{Failure, Model, Norms, NotFound, RigidMotion, Singular};
 use stickslip_scene::number::{sig2, sig4};
@@ -58,7 +59,7 @@ pub fn describe(model: &Model, failure: &Failure) -> String {
             describe(model, last),
             if *scales { "; without gaps, the problem scales with the load, so a smaller increment would not help" } else { "" }
         ),
-        Failure::NotFound(why) => not_found(*why),
+        Failure::NotFound(why) => not_found(model, *why),
         Failure::Singular(Singular::Rigid { motions }) => {
             let bodies = motions.chunk_by(|a, b| a.body == b.body).map(body_motions);
             format!("unrestrained rigid motion: {}", first_of(bodies, MOST_NODES, "; "))
@@ -109,7 +110,7 @@ pub fn describe(model: &Model, failure: &Failure) -> String {
 }
 
 /// Why pivoting or the census found no state.
-fn not_found(why: NotFound) -> String {
+fn not_found(model: &Model, why: NotFound) -> String {
     match why {
         NotFound::Ray => {
             "pivoting ended on a ray from every start, without a consistent state".into()
@@ -133,10 +134,16 @@ fn not_found(why: NotFound) -> String {
         NotFound::NotCondensed => {
             "the bodies cannot be condensed to the interface, so pivoting and census are not possible".into()
         }
-        NotFound::Unconfirmed { states } => format!(
-            "{} found, but not confirmed by a minor iteration",
-            counted(states, "consistent state")
-        ),
+        NotFound::Unconfirmed { states } => {
+            let coheres = |contact: &Contact| contact.friction.cohesion != 0.0;
+            let why = if model.contacts.iter().any(coheres) {
+                ": pivoting lets cohesion act on open nodes, and Table 2 does not"
+            } else {
+                ""
+            };
+            let found = counted(states, "state");
+            format!("{found} found, but not confirmed by a minor iteration{why}")
+        }
     }
 }
 

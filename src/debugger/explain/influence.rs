@@ -27,16 +27,15 @@ pub struct Influence {
     pub f_t: f64,
 }
 
-/// The effects of all nodes' changes on each of the nodes `targets`, between the iterations that start from
-/// `before` and from `after`; nodes without a change are left out. `None` if either iteration has no solution.
+/// The effects of all nodes' changes on each of the nodes `targets`, between the iteration with the solution `old` and the one that
+/// starts from `after`; nodes without a change are left out. `None` if the later iteration has no solution.
 pub fn influences(
     problem: &InterfaceProblem,
-    before: &[ContactState],
+    old: &[NodeIncrement],
     after: &[ContactState],
     targets: &[usize],
 ) -> Option<Vec<Vec<Influence>>> {
     let mut trials = Trials::new(problem)?;
-    let old = trials.solve_states(before)?;
     trials.solve_states(after)?;
     spread(&mut trials, after, targets, |from, row| {
         row.value - left_side(row, &old[from])
@@ -122,10 +121,11 @@ pub struct PushPath {
     pub before: usize,
 }
 
-/// The frozen problem between two minor iterations, and the nodes' states before the first of them.
+/// The frozen problem between two minor iterations, and the first of them: the modes of all slave nodes, and the solution.
 pub struct FrozenStep {
     problem: InterfaceProblem,
-    before: Vec<ContactState>,
+    modes: Vec<Mode>,
+    old: Vec<NodeIncrement>,
 }
 
 /// The pushes on a node in the iteration after the steps; `None` if unknown.
@@ -136,42 +136,49 @@ pub fn pushes(stepper: &mut Stepper, slave: usize, way: &PushPath) -> Option<Vec
 /// Repeats the steps and the iteration after them.
 pub fn between(stepper: &mut Stepper, way: &PushPath) -> Option<FrozenStep> {
     stepper.restore(&way.state);
-    let mut before: Vec<ContactState> = Vec::new();
+    let (mut modes, mut old) = (Vec::new(), Vec::new());
     for (place, step) in way.steps.iter().enumerate() {
-        if place == way.before {
-            before.clone_from(&stepper.state().nodes);
-        }
+        let nodes = stepper.state().nodes.iter();
+        let now: Vec<Mode> = nodes.map(|node| node.mode).collect();
         match step {
             Some(intervention) => stepper.intervene(intervention).ok()?,
             None => {
                 stepper.step()?;
             }
         }
+        if place == way.before {
+            old = (0..now.len()).map(|s| stepper.increment(s)).collect();
+            modes = now;
+        }
     }
     let problem = stepper.interface_problem()?;
-    Some(FrozenStep { problem, before })
+    let solutions = problem
+        .nodes
+        .iter()
+        .map(|node| old.get(node.slave).copied());
+    Some(FrozenStep {
+        old: solutions.collect::<Option<_>>()?,
+        modes,
+        problem,
+    })
 }
 
 /// The pushes on a node between two minor iterations.
-pub fn pushed(FrozenStep { problem, before }: &FrozenStep, slave: usize) -> Option<Vec<NodePush>> {
+pub fn pushed(step: &FrozenStep, slave: usize) -> Option<Vec<NodePush>> {
+    let problem = &step.problem;
     let after = problem.states();
     let target = problem.nodes.iter().position(|node| node.slave == slave)?;
     let of = |node: usize| problem.nodes[node].slave;
-    let found = influences(problem, &pick(problem, before), &after, &[target])?;
+    let found = influences(problem, &step.old, &after, &[target])?;
     Some(
         found
             .into_iter()
             .flatten()
             .map(|influence| NodePush {
                 slave: of(influence.from),
-                modes: [before[of(influence.from)].mode, after[influence.from].mode],
+                modes: [step.modes[of(influence.from)], after[influence.from].mode],
                 influence,
             })
             .collect(),
     )
-}
-
-/// The states of a problem's nodes, from those of all slave nodes.
-fn pick(problem: &InterfaceProblem, nodes: &[ContactState]) -> Vec<ContactState> {
-    problem.nodes.iter().map(|node| nodes[node.slave]).collect()
 }

@@ -154,13 +154,10 @@ impl Stepper {
             return slower.unwrap_or_else(|| self.end_motion(why));
         }
         if motion.coming_to_rest {
-            if let Some(found) = self.now.violated_since_origin(&after) {
-                self.now.state.next_major();
-                return self.end_motion(Failure::Refused(found));
-            }
+            let far = motion.travelled + moved > JUMP * self.now.model.length;
+            let jumped = far || self.now.violates_since_origin(&after);
             // The other branch has a different pace.
             self.now.state.record.pace = Pace::default();
-            let jumped = motion.travelled + moved > JUMP * self.now.model.length;
             self.now.state.record.watch = StabilityWatch::default();
             let landing = AcceptanceNotes {
                 jumped,
@@ -187,10 +184,12 @@ impl Stepper {
 }
 
 impl Iterate {
-    /// The law that the state violates over the whole damped motion of a search: its start and end are accepted states. `None` if
-    /// it violates none, or if the scene requests damped motions.
-    fn violated_since_origin(&mut self, after: &Norms) -> Option<Finding> {
-        let origin = self.state.record.searched.origin.clone()?;
+    /// Whether the state violates a law over the whole damped motion of a search, as it does if a node slides and sticks again on
+    /// the way. It then depends on the motion, however small that is.
+    fn violates_since_origin(&mut self, after: &Norms) -> bool {
+        let Some(origin) = self.state.record.searched.origin.clone() else {
+            return false;
+        };
         let at = LinearisationPoint {
             accepted: AcceptedState {
                 u: &origin.u,
@@ -200,7 +199,7 @@ impl Iterate {
             ..self.state.at()
         };
         let worst = worst_of(&self.source.judge(&at, after));
-        worst.filter(|found| found.law != JudgedLaw::Touch)
+        worst.is_some_and(|found| found.law != JudgedLaw::Touch)
     }
 
     /// Prepares a damped motion from the last equilibrium, with constant loads. `None` if the state there cannot be linearised.
