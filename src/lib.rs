@@ -18,8 +18,6 @@
 pub mod cli;
 
 pub use stickslip_attach as attach;
-#[cfg(mutants)]
-pub use stickslip_core::mutants;
 pub use stickslip_core::{contact, executor, fem, interface, linear, model, step, strategy};
 pub use stickslip_debugger::{action, explain, history, record, recorded, session, teach};
 pub use stickslip_linalg as linalg;

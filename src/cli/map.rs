@@ -12,7 +12,7 @@ use stickslip_scene::builtin;
 use stickslip_scene::shown::aligned;
 use stickslip_study::map::{self, Map, MapCell};
 use stickslip_study::plan::{MOST_CASES, product};
-use stickslip_study::random::{self, NODES, Population};
+use stickslip_study::random::{NODES, Population};
 use stickslip_study::survey::{self, Survey};
 use stickslip_study::trial::{JudgedProblem, TOLERANCE, Variant};
 use stickslip_study::{Plan, Study, Vary, verdict_figure};
@@ -132,7 +132,7 @@ fn write(args: &Args, population: &Population, k: usize) -> Result<Exit, Error> 
         population.count.max(k + 1),
         population.seed
     )];
-    let text = random::text(&population.draw(k).problem, &head);
+    let text = population.draw(k).problem.text(&head);
     put(args.output.as_deref(), &text, args.sweep.out.force)
 }
 

@@ -77,8 +77,8 @@
 //!   may change at once, or what all nodes do together. The default of each decision is that of Table 2.
 //! - [`linear`]: the linearised equations. [`linear::source::Source`] is the interface between the stepper and the deforming
 //!   bodies: it linearises at a state, solves for the modes of the nodes, updates the forces, and returns the new positions of
-//!   the nodes. [`linear::bodies`] is the source for bodies of this package, [`linear::constant`] one with constant matrices;
-//!   pass a custom source to [`Stepper::with_source`].
+//!   the nodes. [`linear::bodies`] is the source for bodies of this package; pass a custom source to
+//!   [`Stepper::with_source`].
 //! - [`step`]: increments, major and minor iterations: the algorithm box. [`Solver`] is the interface that a debugger steps.
 //!
 //! # Conventions
@@ -145,5 +145,3 @@ pub use step::watch::StabilityLoss;
 pub use step::{Event, Failure, Outcome, Solver, State, Status, Stepper};
 pub use stickslip_linalg as linalg;
 pub use stickslip_linalg::executor;
-#[cfg(mutants)]
-pub use stickslip_linalg::mutants;

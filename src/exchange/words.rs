@@ -4,7 +4,7 @@ use crate::FormatError;
 use crate::bail;
 
 /// Maximum number of characters of a word in a message.
-const SHOWN: usize = 40;
+const SHOWN: usize = 60;
 
 /// The unread words of a text.
 pub struct Words<'t> {
@@ -163,9 +163,13 @@ pub fn quoted(word: &str) -> String {
 
 /// Line and column of a byte, both from 1; columns count characters.
 pub fn place(text: &str, byte: usize) -> (usize, usize) {
+    let mut byte = byte.min(text.len());
+    while !text.is_char_boundary(byte) {
+        byte -= 1;
+    }
     let before = &text[..byte];
+    let line = 1 + before.matches('\n').count();
     let start = before.rfind('\n').map_or(0, |k| k + 1);
-    let line = 1 + before.bytes().filter(|&b| b == b'\n').count();
     (line, 1 + before[start..].chars().count())
 }
 

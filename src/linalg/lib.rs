@@ -18,8 +18,6 @@ mod front;
 mod fronts;
 mod graph;
 mod lu;
-#[cfg(mutants)]
-pub mod mutants;
 mod order;
 mod pattern;
 mod subtrees;

@@ -165,10 +165,6 @@ impl SymmetricFactors {
             }
         }
         self.ready = f64::EPSILON * self.growth() <= BACKWARD_LIMIT * self.size;
-        #[cfg(mutants)]
-        {
-            self.ready = crate::mutants::pick("pivot-growth-unnoticed", self.ready, true);
-        }
         if self.ready {
             Ok(())
         } else {

@@ -123,8 +123,6 @@ pub(crate) fn mesh_nodes(
     reduced: bool,
     scale: f64,
 ) -> Result<Nodes, (&'static str, String)> {
-    #[cfg(mutants)]
-    let scale = stickslip_core::mutants::pick("import-without-its-scale", scale, 1.0);
     let label = |&n: &usize| mesh.labels[n] as usize;
     let mut used = vec![false; mesh.nodes.len()];
     mesh.cells

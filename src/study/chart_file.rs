@@ -14,12 +14,13 @@
 //! )
 //! ```
 
-use super::read::{Vary, pairs, parse};
+use super::read::{Vary, pairs};
 use super::reference::Reference;
 use serde::Deserialize;
 use std::path::PathBuf;
 use stickslip_scene::builtin;
 use stickslip_scene::embedded_all;
+use stickslip_scene::format::read::value;
 use stickslip_scene::{EmbeddedFile, Scene, SceneError};
 
 /// A chart before it is measured.
@@ -148,7 +149,7 @@ impl Chart {
     /// # Errors
     /// If it cannot be read, with line and column.
     pub fn from_text(name: &str, text: &str) -> Result<Chart, SceneError> {
-        let file: File = parse(name, text)?;
+        let file: File = value(name, text, "chart")?;
         Ok(Chart {
             title: String::new(),
             truth: if file.finest.is_empty() {

@@ -15,10 +15,9 @@
 
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::Rng;
-use std::fmt::Write;
 use std::ops::RangeInclusive;
 use stickslip_core::{Friction, Mode, Settings};
-use stickslip_scene::format::condensed::{Contact, HEAD, Matrix, Problem};
+use stickslip_scene::format::condensed::{Contact, Matrix, Problem};
 
 /// The default range of the number of nodes.
 pub const NODES: RangeInclusive<usize> = 1..=4;
@@ -170,50 +169,6 @@ fn matrix(draw: &mut RandomStream, size: usize, form: Form) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// A problem as the text of a file, with `head` as comments. All floats read back to the same bits. States,
-/// history and settings are not written, since random problems have none.
-pub fn text(problem: &Problem, head: &[String]) -> String {
-    let mut text: String = head.iter().map(|line| format!("// {line}\n")).collect();
-    // Writing to a string does not fail.
-    let _ = writeln!(text, "{HEAD}(\n    title: {:?},", problem.title);
-    text += "    contacts: [\n";
-    for contact in &problem.contacts {
-        let Friction { angle, cohesion } = contact.friction;
-        let _ = write!(
-            text,
-            "        (id: {:?}, gap: {:?}",
-            contact.id, contact.gap
-        );
-        let _ = write!(
-            text,
-            ", friction: (angle: {angle:?}, cohesion: {cohesion:?})"
-        );
-        if contact.load != [0.0; 2] {
-            let _ = write!(text, ", load: {:?}", (contact.load[0], contact.load[1]));
-        }
-        text += "),\n";
-    }
-    let lines =
-        |rows: &[Vec<f64>]| -> Vec<String> { rows.iter().map(|row| format!("{row:?}")).collect() };
-    let (name, rows) = match &problem.matrix {
-        Matrix::Stiffness(rows) => ("Stiffness", lines(rows)),
-        Matrix::Compliance(rows) => ("Compliance", lines(rows)),
-        Matrix::Entries(entries) => (
-            "Entries",
-            entries.iter().map(|entry| format!("{entry:?}")).collect(),
-        ),
-    };
-    let _ = writeln!(text, "    ],\n    matrix: {name}([");
-    for row in rows {
-        let _ = writeln!(text, "        {row},");
-    }
-    text += "    ]),\n";
-    if !problem.free.is_empty() {
-        let _ = writeln!(text, "    free: {:?},", problem.free);
-    }
-    text + ")\n"
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -267,7 +222,7 @@ mod tests {
     fn a_written_problem_reads_back_to_the_same_bits() {
         for k in 0..20 {
             let problem = population().draw(k).problem;
-            let text = text(&problem, &["where it comes from".to_owned()]);
+            let text = problem.text(&["where it comes from".to_owned()]);
             let read = Scene::from_text("x.ron", &text, &[]).unwrap();
             assert_eq!(read.spec, problem.spec(), "{text}");
         }

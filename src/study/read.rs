@@ -15,14 +15,12 @@
 //! matching paths to the same value.
 
 use super::builtin;
-use ron::error::SpannedError;
 use serde::Deserialize;
-use serde::de::{DeserializeOwned, Deserializer, Visitor};
+use serde::de::{Deserializer, Visitor};
 use std::fmt;
-use stickslip_scene::format::error::{Path, Step, did_you_mean, quoted};
+use stickslip_scene::format::error::{Path, Step, did_you_mean};
 use stickslip_scene::format::locate::{locate, too_deep};
-use stickslip_scene::format::notation;
-use stickslip_scene::format::read::{path_of, plainly, shallow, text};
+use stickslip_scene::format::read::{text, value};
 use stickslip_scene::readers::or_mistaken;
 use stickslip_scene::{FileKind, Scene, SceneError};
 
@@ -203,8 +201,8 @@ impl Study {
     /// # Errors
     /// If it cannot be read, with line and column.
     pub fn from_text(name: &str, text: &str) -> Result<Study, SceneError> {
-        let mut file: StudyFile =
-            parse(name, text).map_err(|error| or_mistaken(error, name, text, FileKind::Study))?;
+        let mut file: StudyFile = value(name, text, "study")
+            .map_err(|error| or_mistaken(error, name, text, FileKind::Study))?;
         if file.scene.is_some() && !file.scenes.is_empty() {
             let twice = "a study needs either scene or scenes, not both";
             return Err(SceneError::whole(name, twice));
@@ -323,45 +321,6 @@ pub(super) fn pairs<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<(String, S
         .into_iter()
         .map(|(path, word)| (path, word.0))
         .collect())
-}
-
-/// Parses a file that contains one value.
-pub(super) fn parse<T: DeserializeOwned>(name: &str, text: &str) -> Result<T, SceneError> {
-    shallow(name, text, "study")?;
-    notation::read(text).map_err(|error| {
-        let path = path_of(text, &error).to_string();
-        unreadable(name, &error, path)
-    })
-}
-
-fn unreadable(name: &str, error: &SpannedError, path: String) -> SceneError {
-    let start = error.span.start;
-    SceneError {
-        file: name.to_owned(),
-        at: Some((start.line, start.col)),
-        set: None,
-        path,
-        message: message(&error.code),
-    }
-}
-
-/// ron's error message, reworded for authors who are not programmers.
-fn message(error: &ron::Error) -> String {
-    use ron::Error as E;
-    match error {
-        E::NoSuchStructField {
-            expected, found, ..
-        } => format!(
-            "a study has no field {}{} (fields: {})",
-            quoted(found),
-            did_you_mean(found, expected.iter().copied()),
-            expected.join(", ")
-        ),
-        E::MissingStructField { field, .. } => format!("the study has no {field}"),
-        E::ExpectedComma => "a comma or a closing bracket is missing".to_owned(),
-        E::Eof => "the file ends too early; a bracket or a quote is not closed".to_owned(),
-        other => plainly(other),
-    }
 }
 
 /// Whether a text is a study, valid or not: it names scenes or varies something, which no scene does.

@@ -69,6 +69,20 @@ fn built(folder: &Path, commands: &[&[&str]]) {
     }
 }
 
+/// The path of a C program that was built with the header.
+fn built_in_c(folder: &Path, name: &str) -> String {
+    let header = [&HEADER[..], &["-o", "stickslip_c.o"]].concat();
+    let source = format!("{name}.c");
+    built(
+        folder,
+        &[
+            &header,
+            &["cc", &source, "stickslip_c.o", "-lm", "-o", name],
+        ],
+    );
+    folder.join(name).display().to_string()
+}
+
 fn start(command: &[&str]) -> Start {
     Start {
         start: PATIENT,
@@ -81,16 +95,9 @@ fn start(command: &[&str]) -> Start {
 fn a_solver_in_c_fortran_or_python_keeps_its_loops_and_passes_every_check() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name).display().to_string();
-    let header = [&HEADER[..], &["-o", "stickslip_c.o"]].concat();
-    built(
-        folder.path(),
-        &[
-            &header,
-            &["cc", "loops.c", "stickslip_c.o", "-lm", "-o", "loops"],
-        ],
-    );
+    let c = built_in_c(folder.path(), "loops");
     let has = |program: &str| Process::new(program).arg("--version").output().is_ok();
-    let mut commands = vec![vec![at("loops")]];
+    let mut commands = vec![vec![c]];
     if has("gfortran") {
         let fortran = [
             "gfortran",
@@ -178,11 +185,9 @@ fn kill(process: u32) {
 
 fn the_copies_of_a_process_end_with_each_other_and_with_the_program() {
     let folder = tempfile::tempdir().unwrap();
-    let header = [&HEADER[..], &["-o", "stickslip_c.o"]].concat();
-    let link = ["cc", "loops.c", "stickslip_c.o", "-lm", "-o", "loops"];
-    built(folder.path(), &[&header, &link]);
+    let c = built_in_c(folder.path(), "loops");
     let at = |name: &str| folder.path().join(name).display().to_string();
-    let (c, python) = (at("loops"), at("loops.py"));
+    let python = at("loops.py");
     for command in [vec![&*c], vec!["python3", &python]] {
         let mut session = session(start(&command), &Log::default());
         for _ in 0..4 {
@@ -221,10 +226,7 @@ fn the_copies_of_a_process_end_with_each_other_and_with_the_program() {
 
 fn a_branch_of_a_forked_state_leaves_the_other_one_as_it_was() {
     let folder = tempfile::tempdir().unwrap();
-    let header = [&HEADER[..], &["-o", "stickslip_c.o"]].concat();
-    let link = ["cc", "loops.c", "stickslip_c.o", "-lm", "-o", "loops"];
-    built(folder.path(), &[&header, &link]);
-    let command = folder.path().join("loops").display().to_string();
+    let command = built_in_c(folder.path(), "loops");
     let mut session = session(start(&[&command]), &Log::default());
     let forward = |count| Command::Forward {
         unit: Unit::Minor,
@@ -281,10 +283,7 @@ fn values_that_repeat_and_long_periods_are_found() {
 
 fn a_solver_in_c_in_space_has_its_swing_found() {
     let folder = tempfile::tempdir().unwrap();
-    let header = [&HEADER[..], &["-o", "stickslip_c.o"]].concat();
-    let link = ["cc", "loops_3d.c", "stickslip_c.o", "-lm", "-o", "loops_3d"];
-    built(folder.path(), &[&header, &link]);
-    let command = folder.path().join("loops_3d").display().to_string();
+    let command = built_in_c(folder.path(), "loops_3d");
     let report = check(&start(&[&command]), &Log::default());
     assert_eq!(report.failed(), 0, "{}", report.text());
     let mut session = session(start(&[&command]), &Log::default());

@@ -5,10 +5,13 @@
 //! diagnosis. Then `S` and `j` with a screen of 200 by 60 and a journal: processor time of all threads until all are idle, and a
 //! frame. Of steps the median of some. All of a row are measured in one process. A table, not a statistic: hence no harness.
 
+#[path = "../common/peak.rs"]
+mod peak;
+
+use peak::peak;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use rustix::time::{ClockId, clock_gettime};
-use std::fs;
 use std::time::Instant;
 use stickslip::model::Mode;
 use stickslip::record::command::{Command, Unit};
@@ -146,12 +149,4 @@ fn median(times: impl Iterator<Item = f64>) -> f64 {
     let mut times: Vec<f64> = times.filter(|time| !time.is_nan()).collect();
     times.sort_unstable_by(f64::total_cmp);
     times.get(times.len() / 2).copied().unwrap_or(f64::NAN)
-}
-
-/// Most memory that the process has had, in MB; of the rows so far, that of the largest.
-fn peak() -> String {
-    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let line = status.lines().find_map(|l| l.strip_prefix("VmHWM:"));
-    let kilobytes = line.and_then(|l| l.trim().trim_end_matches(" kB").parse::<u64>().ok());
-    kilobytes.map_or("?".into(), |k| (k / 1024).to_string())
 }

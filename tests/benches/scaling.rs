@@ -5,7 +5,10 @@
 //! first the median, since they differ in size. All of a row are measured in the same process. A second table has a single body on
 //! one thread and on all. Tables, not statistics: hence no harness.
 
-use std::fs;
+#[path = "../common/peak.rs"]
+mod peak;
+
+use peak::peak;
 use std::sync::Arc;
 use std::time::Instant;
 use stickslip::executor::{Executor, SequentialExecutor};
@@ -169,12 +172,4 @@ fn parts(model: &Model, executor: Arc<dyn Executor>) -> (f64, f64) {
         factored = factored.min(began.elapsed().as_secs_f64());
     }
     (assembled, factored)
-}
-
-/// Most memory that the process has had, in MB; of the rows so far, that of the largest.
-fn peak() -> String {
-    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let line = status.lines().find_map(|l| l.strip_prefix("VmHWM:"));
-    let kilobytes = line.and_then(|l| l.trim().trim_end_matches(" kB").parse::<u64>().ok());
-    kilobytes.map_or("?".into(), |k| (k / 1024).to_string())
 }

@@ -13,13 +13,20 @@ use stickslip::step::intervene::Intervention;
 use stickslip::step::state::State;
 use stickslip::step::stepper::Stepper;
 
+/// Settings as `Scene::open` takes them.
+pub fn owned(set: &[(&str, &str)]) -> Vec<(String, String)> {
+    let pair = |(path, value): &(&str, &str)| (path.to_string(), value.to_string());
+    set.iter().map(pair).collect()
+}
+
 /// A scene with `--set` like overrides.
 pub fn scene(name: &str, overrides: &[(&str, &str)]) -> Scene {
-    let overrides: Vec<_> = overrides
-        .iter()
-        .map(|(p, v)| (p.to_string(), v.to_string()))
-        .collect();
-    Scene::open(name, &overrides).unwrap_or_else(|e| panic!("{e}"))
+    Scene::open(name, &owned(overrides)).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// The scene of a text.
+pub fn read(text: &str) -> Scene {
+    Scene::from_text("scene.ron", text, &[]).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// One accepted increment.
@@ -49,6 +56,19 @@ pub fn run(scene: &Scene) -> Run {
         failure: None,
         steps: 0,
     })
+}
+
+/// A run that reaches the end of its history.
+#[track_caller]
+pub fn finished(scene: &Scene) -> Run {
+    let run = run(scene);
+    assert!(run.failure.is_none(), "{:?}", run.failure);
+    run
+}
+
+/// A monitor in the last accepted increment.
+pub fn last(run: &Run, monitor: &str) -> f64 {
+    run.accepted.last().unwrap().monitors[monitor]
 }
 
 /// Goes on with a run, for example after an intervention.

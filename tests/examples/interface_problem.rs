@@ -1,7 +1,7 @@
 //! Poses an interface problem of its own, without bodies, finds all of its consistent states, and steps it.
 //!
-//! Two slave nodes on a floor are held by springs and coupled by another one. With K the stiffness and w the displacements
-//! in the components (n, t) of each node, λ the load factor, p the loads and F the forces of the floor, K w = λ p + F.
+//! Two slave nodes on a floor are held by springs and coupled by another one. With K the stiffness and u the displacements
+//! in the components (x, y) of each node, λ the load factor, p the loads and F the forces of the floor, K u = λ p + F.
 //!
 //! `cargo run --example interface_problem`
 
@@ -13,20 +13,25 @@ use std::sync::Arc;
 use stickslip::interface::census::census;
 use stickslip::interface::problem::AssumedMode;
 use stickslip::interface::trials::Trials;
-use stickslip::linear::constant::Constant;
-use stickslip::model::{Friction, Settings};
+use stickslip::model::{
+    BodyKind, Component, Contact, Form, Friction, Linear, Model, Settings, Surface, Touch,
+};
 use stickslip::step::Stepper;
 use stickslip::step::drive::{RunEnd, Until};
 
-/// Stiffness by rows: n and t of node 0, n and t of node 1.
-const K: [[f64; 4]; 4] = [
-    [100.0, 0.0, 0.0, 0.0],
-    [0.0, 120.0, 0.0, -20.0],
-    [0.0, 0.0, 100.0, 0.0],
-    [0.0, -20.0, 0.0, 120.0],
+/// Stiffness: row, column and value; x and y of node 0, then of node 1.
+const K: [(usize, usize, f64); 6] = [
+    (0, 0, 120.0),
+    (0, 2, -20.0),
+    (1, 1, 100.0),
+    (2, 0, -20.0),
+    (2, 2, 120.0),
+    (3, 3, 100.0),
 ];
-/// Loads in the same components: both nodes are pressed down, and node 0 is pushed against t.
-const P: [f64; 4] = [-30.0, -30.0, -30.0, 0.0];
+/// Loads in the same components: both nodes are pressed down, and node 0 is pushed along x, against t.
+const P: [[f64; 2]; 2] = [[30.0, -30.0], [0.0, -30.0]];
+/// Height of both nodes above the floor.
+const GAP: f64 = 0.1;
 
 fn main() -> Result<(), Box<dyn Error>> {
     run(&mut std::io::stdout())
@@ -38,17 +43,28 @@ pub fn run(out: &mut impl Write) -> Result<(), Box<dyn Error>> {
         angle: 20.0,
         cohesion: 0.0,
     };
-    let columns = (0..4).flat_map(|j| K.map(|row| row[j]));
-    let (gaps, length) = (vec![0.1; 2], 1.0);
-    let interface = Constant::try_new(
-        columns.collect(),
-        P.to_vec(),
-        gaps,
-        vec![friction; 2],
-        length,
-    )?;
-    let model = interface.model(vec![0.0, 1.0], 1.0, Settings::default());
-    let mut stepper = Stepper::with_source(Arc::new(model), Box::new(interface.source()));
+    let mut model = Model::builder("two nodes on springs");
+    let floor = [5.0, -5.0].map(|x| model.node("floor", [x, 0.0]));
+    model.surface(Surface::endless("floor", floor));
+    let nodes = [0.0, 1.0].map(|x| model.node("node", [x, GAP]));
+    let springs = Linear {
+        form: Form::Stiffness,
+        entries: K.to_vec(),
+        bars: Vec::new(),
+    };
+    model.body("springs", nodes.to_vec(), BodyKind::Linear(springs));
+    for (node, [x, y]) in nodes.into_iter().zip(P) {
+        model.contact(Contact::new(node, vec![0], friction));
+        model
+            .load(node, Component::X, x)
+            .load(node, Component::Y, y);
+    }
+    // One step of Coulomb's law.
+    model.settings(Settings {
+        touch: Touch::Start,
+        ..Settings::default()
+    });
+    let mut stepper = Stepper::new(Arc::new(model.build()?));
 
     // The problem of the first major iteration, which aims at the whole load.
     let problem = stepper.interface_problem().ok_or("not condensed")?;

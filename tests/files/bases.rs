@@ -105,7 +105,7 @@ fn whatever_is_set_a_base_has_the_model_of_the_scene_read_with_it_or_none() {
         nodes: 2..=2,
     };
     let problem = problem.draw(0).problem;
-    try_all("contacts", &stickslip::study::random::text(&problem, &[]));
+    try_all("contacts", &problem.text(&[]));
 }
 
 #[test]

@@ -1,6 +1,6 @@
-//! What the tests of solids share: a block alone, and a run that must get to its end.
+//! What the tests of solids share: a block alone.
 
-use crate::common::{Run, run};
+use crate::common::read;
 use stickslip::scene::Scene;
 
 /// A block alone: corners, elements, material, and whatever else.
@@ -10,15 +10,5 @@ pub fn block(corners: &str, elements: &str, material: &str, rest: &str) -> Scene
           materials: [Elastic(id: \"m\", {material})], bodies: [Solid(id: \"k\", mesh: \"k\", material: \"m\")],
           {rest})"
     );
-    Scene::from_text("test.ron", &text, &[]).unwrap_or_else(|e| panic!("{e}"))
-}
-
-pub fn finished(scene: &Scene) -> Run {
-    let run = run(scene);
-    assert!(run.failure.is_none(), "{:?}", run.failure);
-    run
-}
-
-pub fn last(run: &Run, monitor: &str) -> f64 {
-    run.accepted.last().unwrap().monitors[monitor]
+    read(&text)
 }

@@ -1,6 +1,7 @@
 //! Laws of pairs together with what else a scene may ask for: an axis, press fits, arcs, changes by hand, snapshots.
 
-use crate::common::run;
+use crate::common::{finished, read, run};
+use crate::start_gaps::bar;
 use std::sync::Arc;
 use stickslip::format::spec::LoadSpec;
 use stickslip::model::{Friction, Mode};
@@ -9,10 +10,6 @@ use stickslip::scene::Scene;
 use stickslip::scene::cost::Cost;
 use stickslip::step::intervene::Intervention;
 use stickslip::step::stepper::Stepper;
-
-fn read(text: &str) -> Scene {
-    Scene::from_text("scene.ron", text, &[]).unwrap_or_else(|error| panic!("{error}"))
-}
 
 /// A cylinder of radius 2 and height 1 on a penalty floor, pressed by its top.
 const CYLINDER: &str = r#"(
@@ -45,8 +42,7 @@ fn a_corner_on_the_axis_has_no_area_and_is_left_out_of_the_penalty_and_named() {
     assert_eq!(scene.model.contacts.len(), 8, "of 9 nodes of the bottom");
     let told = Cost::from_scene(&scene).to_string();
     assert!(told.contains("A = 0") && told.contains("k.1"), "{told}");
-    let run = run(&scene);
-    assert!(run.failure.is_none(), "{:?}", run.failure);
+    let run = finished(&scene);
     // p = u / (h / E + 1 / K) on the whole circle.
     let pressure = 1e-3 / (1.0 / 1000.0 + 1.0 / 500.0);
     let monitors = &run.accepted.last().unwrap().monitors;
@@ -58,33 +54,12 @@ fn a_corner_on_the_axis_has_no_area_and_is_left_out_of_the_penalty_and_named() {
     }
 }
 
-/// A bar of length 2 and EA 10 between a fixed end and a floor on a spring of 5 · 2, whose other end is 0.1 inside.
-fn bar(settings: &str, history: &str) -> Scene {
-    read(&format!(
-        r#"(
-    title: "A bar that starts inside a floor that gives way",
-    nodes: [
-        Line(id: "bar", from: (0.0, 1.9), to: (0.0, -0.1), elements: 2, per_element: 3),
-        Line(id: "floor", from: (1.0, 0.0), to: (-1.0, 0.0), elements: 1, per_element: 2),
-    ],
-    materials: [Section(id: "rod", EA: 10.0, EI: 1.0)],
-    bodies: [Beam(id: "bar", along: "bar", material: "rod")],
-    surfaces: [(id: "floor", along: "floor")],
-    slaves: [(nodes: ["bar.end"], on: ["floor"], law: Penalty(stiffness: 5.0), stick: 7.0, area: 2.0)],
-    friction: (angle: 20.0),
-    supports: [(node: "bar.start", fix: [x, y, rotation])],
-    loads: [],
-    history: {history},
-    settings: ({settings}),
-    monitors: [(name: "F_n", of: Contact(component: y)), (name: "y", of: Displacement(node: "bar.end", component: y))],
-)"#
-    ))
-}
-
 #[test]
 fn an_overlap_that_is_closed_step_by_step_ends_where_one_closed_at_once_does() {
     let ends = ["initial_gaps: ramp", "initial_gaps: keep"].map(|settings| {
-        let run = run(&bar(settings, "(path: [0.0, 1.0], increment: 0.25)"));
+        // On a spring of 5 · 2, from 0.1 inside.
+        let law = ", law: Penalty(stiffness: 5.0), stick: 7.0, area: 2.0";
+        let run = run(&bar(0.1, law, settings, "[0.0, 1.0]"));
         assert!(run.failure.is_none(), "{settings}: {:?}", run.failure);
         let monitors = &run.accepted.last().unwrap().monitors;
         ["F_n", "y"].map(|name| monitors[name])

@@ -1,8 +1,7 @@
 //! The law at a border between two sides: what a node bears there that slid onto it. Kinks go to zero, increments too; the solver,
 //! its judge and the judge from outside agree.
 
-use crate::blocks::finished;
-use crate::common::{Accepted, scene};
+use crate::common::{Accepted, finished, read, scene};
 use crate::outside::judge::Corner;
 use crate::outside::trial::{End, attempt};
 use proptest::prelude::*;
@@ -305,7 +304,7 @@ fn dragged(half: f64, pull: f64, crossed: bool, increment: f64) -> Scene {
         history: (path: [0.0, 1.0], increment: {increment:?}),
         monitors: [(name: \"u_x\", of: Displacement(node: \"n\", component: x))])"
     );
-    Scene::from_text("dragged", &text, &[]).unwrap_or_else(|e| panic!("{e}"))
+    read(&text)
 }
 
 /// Steps to the end of the history; how often a node went back to the side along which it had come.

@@ -1,8 +1,7 @@
 //! Concave corners and convex vertices, against closed forms: a node in a valley, on a ridge and over it, a block between a
 //! floor and a wall, a wheel at a step; and problem 02, whose bent elements make small corners everywhere.
 
-use crate::blocks::{finished, last};
-use crate::common::{Run, run, scene};
+use crate::common::{Run, finished, last, run, scene};
 use stickslip::contact::table2::Rule;
 use stickslip::model::Mode;
 use stickslip::scene::Scene;

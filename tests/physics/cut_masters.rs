@@ -1,6 +1,6 @@
 //! Masters that are cut at their convex corners: a node that goes past a corner at a depth touches the side that its own faces.
 
-use crate::common::{Run, run, scene};
+use crate::common::{Run, finished, scene};
 use std::sync::Arc;
 use stickslip::scene::Scene;
 use stickslip::step::event::{Failure, Outcome};
@@ -10,9 +10,7 @@ const PLUG: &str = "tests/findings/plug-past-a-corner.inp";
 
 fn solved(text: &str) -> Run {
     let scene = Scene::from_text(PLUG, text, &[]).unwrap_or_else(|e| panic!("{e}"));
-    let run = run(&scene);
-    assert!(run.failure.is_none(), "{:?}", run.failure);
-    run
+    finished(&scene)
 }
 
 /// The force that the plug is pressed in with.

@@ -1,6 +1,6 @@
 //! Decks of CalculiX: what they mean is what a scene written by hand means, or what a closed form says.
 
-use crate::common::{Run, run, scene};
+use crate::common::{Run, last, run, scene};
 use crate::outside::trial::{End, attempt};
 use stickslip::scene::Scene;
 
@@ -21,10 +21,6 @@ fn changed(name: &str, changes: &[(&str, &str)]) -> Run {
     let run = run(&scene);
     assert!(run.failure.is_none(), "{name}: {:?}", run.failure);
     run
-}
-
-fn last(run: &Run, monitor: &str) -> f64 {
-    run.accepted.last().unwrap().monitors[monitor]
 }
 
 fn near(a: f64, b: f64, part: f64) {

@@ -1,17 +1,12 @@
 //! The kinds of elements in whole scenes: patches, closed forms, rates of convergence, locking, loads that follow.
 
-use crate::blocks::{finished, last};
-use crate::common::{Run, order};
+use crate::common::{Run, finished, last, order, read};
 use crate::solids::{follows, moved};
 use std::fmt::Write;
 use stickslip::fem::recovery::{Configuration, nodal_stresses};
 use stickslip::format::spec::LoadSpec;
 use stickslip::model::{Component, ElementKind};
 use stickslip::scene::Scene;
-
-fn scene(text: &str) -> Scene {
-    Scene::from_text("test.ron", text, &[]).unwrap_or_else(|e| panic!("{e}\n{text}"))
-}
 
 /// Stresses at the nodes of each body in the last accepted state.
 fn stresses(run: &Run) -> Vec<Vec<Option<[f64; 4]>>> {
@@ -50,7 +45,7 @@ fn distorted_patches_of_every_kind_and_of_two_reproduce_a_homogeneous_deformatio
             "update: updated",
             "update: small",
         ] {
-            let base = scene(&format!(
+            let base = read(&format!(
                 "(title: \"t\", nodes: [
                     Block(id: \"a\", corners: [(0, 0), (1.1, -0.2), (1.3, 1.4), (-0.3, 1.1)], elements: (2, 2), element: {}),
                     Block(id: \"b\", corners: [(1.1, -0.2), (2.4, 0.1), (2.2, 1.9), (1.3, 1.4)], elements: (2, 2), element: {}),
@@ -94,7 +89,7 @@ fn an_axisymmetric_patch_stretched_along_and_around_its_axis_has_one_stress() {
             "update: updated",
             "update: small",
         ] {
-            let base = scene(&format!(
+            let base = read(&format!(
                 "(title: \"t\", nodes: [Block(id: \"k\", corners: [(0.5, 0), (2, -0.3), (2.4, 1.9), (0.3, 1.1)], elements: (3, 3), element: {})],
                   materials: [Elastic(id: \"m\", E: 100, nu: 0.3, plane: axisymmetric, {material})],
                   bodies: [Solid(id: \"k\", mesh: \"k\", material: \"m\")], history: (path: [0, 1], increment: 1))",
@@ -143,7 +138,7 @@ fn an_axisymmetric_patch_stretched_along_and_around_its_axis_has_one_stress() {
 
 /// A thick tube under pressure inside, its ends held along the axis: radial displacement and hoop stress inside.
 fn tube(kind: ElementKind, cells: usize, rest: &str) -> Run {
-    finished(&scene(&format!(
+    finished(&read(&format!(
         "(title: \"t\", nodes: [Block(id: \"k\", corners: [(1, 0), (2, 0.5)], elements: ({cells}, 2), element: {})],
           materials: [Elastic(id: \"m\", E: 1000, nu: 0.3, plane: axisymmetric, {rest})],
           bodies: [Solid(id: \"k\", mesh: \"k\", material: \"m\")],
@@ -192,7 +187,7 @@ fn a_thick_tube_comes_to_lames_closed_form_at_the_rate_of_its_elements() {
 #[test]
 fn a_ring_under_a_following_pressure_grows_as_far_in_the_plane_as_around_its_axis() {
     let material = "E: 100, nu: 0.3, law: neohookean";
-    let round = finished(&scene(&format!(
+    let round = finished(&read(&format!(
         "(title: \"t\", nodes: [Block(id: \"k\", corners: [(1, 0), (2, 0.5)], elements: (6, 1), element: quad9)],
           materials: [Elastic(id: \"m\", {material}, plane: axisymmetric)],
           bodies: [Solid(id: \"k\", mesh: \"k\", material: \"m\")],
@@ -200,7 +195,7 @@ fn a_ring_under_a_following_pressure_grows_as_far_in_the_plane_as_around_its_axi
           loads: [Pressure(along: \"k.left\", value: 20)], history: (path: [0, 1], increment: 0.25),
           monitors: [(name: \"u\", of: Displacement(node: \"k.left.start\", component: x))])"
     )));
-    let flat = finished(&scene(&format!(
+    let flat = finished(&read(&format!(
         "(title: \"t\", nodes: [Block(id: \"k\", corners: [(1, 0), (2, 0), (0, 2), (0, 1)], elements: (6, 8), element: quad9,
             sides: (right: Arc(center: (0, 0)), left: Arc(center: (0, 0))))],
           materials: [Elastic(id: \"m\", {material})], bodies: [Solid(id: \"k\", mesh: \"k\", material: \"m\")],
@@ -223,7 +218,7 @@ fn a_ring_under_a_following_pressure_grows_as_far_in_the_plane_as_around_its_axi
 #[test]
 fn a_following_pressure_on_a_turned_block_acts_across_the_turned_face() {
     // A block on a hinge, turned by a quarter: pressure p on its top of length 2 pulls now along x.
-    let run = finished(&scene(
+    let run = finished(&read(
         "(title: \"t\", nodes: [Block(id: \"k\", corners: [(0, 0), (2, 1)], elements: (2, 1))],
           materials: [Elastic(id: \"m\", E: 1e6, nu: 0, thickness: 0.5)], bodies: [Solid(id: \"k\", mesh: \"k\", material: \"m\")],
           supports: [(node: \"k.bottom.start\", fix: [x, y])],
@@ -247,7 +242,7 @@ fn weight_stretches_a_hanging_bar_as_it_should_in_the_plane_and_around_an_axis()
             ("stress, thickness: 0.7", 0.7),
             ("axisymmetric", std::f64::consts::PI),
         ] {
-            let run = finished(&scene(&format!(
+            let run = finished(&read(&format!(
                 "(title: \"t\", nodes: [Block(id: \"k\", corners: [(0, 0), (1, 10)], elements: (2, 20), element: {})],
                   materials: [Elastic(id: \"m\", E: 1e6, nu: 0, plane: {plane}, update: small)],
                   bodies: [Solid(id: \"b\", mesh: \"k\", material: \"m\")],
@@ -276,7 +271,7 @@ fn weight_stretches_a_hanging_bar_as_it_should_in_the_plane_and_around_an_axis()
 #[test]
 fn two_bars_snap_through_on_their_closed_form() {
     // Half span 1, height 0.5, EA = 10: P = 2 EA (l − L)/L (h − v)/l.
-    let run = finished(&scene(
+    let run = finished(&read(
         "(title: \"t\", nodes: [Node(id: \"a\", at: (-1, 0)), Node(id: \"b\", at: (1, 0)), Node(id: \"c\", at: (0, 0.5))],
           materials: [], bodies: [Truss(id: \"t\", bars: [(\"a\", \"c\"), (\"b\", \"c\")], EA: 10)],
           supports: [(node: \"a\", fix: [x, y]), (node: \"b\", fix: [x, y]), (node: \"c\", fix: [x])],
@@ -296,7 +291,7 @@ fn two_bars_snap_through_on_their_closed_form() {
 #[test]
 fn a_spring_without_an_angle_acts_along_its_line_and_a_small_truss_is_such_springs() {
     let with = |body: &str| {
-        let run = finished(&scene(&format!(
+        let run = finished(&read(&format!(
             "(title: \"t\", nodes: [Node(id: \"a\", at: (-3, 0)), Node(id: \"b\", at: (0, 4)), Node(id: \"c\", at: (0, 0))],
               materials: [], bodies: [{body}], supports: [(node: \"a\", fix: [x, y]), (node: \"b\", fix: [x, y])],
               loads: [Force(node: \"c\", x: 0.3, y: -0.2)], history: (path: [0, 1], increment: 1),
@@ -323,7 +318,7 @@ fn a_spring_without_an_angle_acts_along_its_line_and_a_small_truss_is_such_sprin
 #[test]
 fn small_displacements_are_proportional_to_their_load_until_an_element_is_inverted() {
     let tip = |load: f64| {
-        let run = finished(&scene(&format!(
+        let run = finished(&read(&format!(
             "(title: \"t\", nodes: [Block(id: \"k\", corners: [(0, 0), (10, 1)], elements: (8, 1))],
               materials: [Elastic(id: \"m\", E: 1000, nu: 0.3, update: small)], bodies: [Solid(id: \"k\", mesh: \"k\", material: \"m\")],
               supports: [(node: \"k.left\", fix: [x, y])], loads: [Pressure(along: \"k.top\", value: {load})],
@@ -340,7 +335,7 @@ fn small_displacements_are_proportional_to_their_load_until_an_element_is_invert
 /// Two blocks pressed on each other by a uniform pressure: how far the stress across is from uniform, as a part of it, in the
 /// lower block and in the upper one.
 fn pressed(low: (usize, ElementKind), up: (usize, ElementKind)) -> [f64; 2] {
-    let run = finished(&scene(&format!(
+    let run = finished(&read(&format!(
         "(title: \"t\", nodes: [
             Block(id: \"low\", corners: [(0, 0), (6, 2)], elements: ({}, 2), element: {}),
             Block(id: \"up\", corners: [(0, 2), (6, 4)], elements: ({}, 2), element: {})],
@@ -443,7 +438,7 @@ fn check_lists_nodes_on_the_axis_that_may_leave_it() {
               materials: [Elastic(id: \"m\", E: 1, nu: 0, plane: {plane})], bodies: [Solid(id: \"k\", mesh: \"k\", material: \"m\")],
               supports: [{supports}], history: (path: [0, 1], increment: 1))"
         );
-        let cost = stickslip::scene::cost::Cost::from_scene(&scene(&text));
+        let cost = stickslip::scene::cost::Cost::from_scene(&read(&text));
         cost.to_string()
             .lines()
             .filter(|line| line.starts_with("axis"))
@@ -471,7 +466,7 @@ fn whole_sets_of_nodes_of_every_kind_are_moved_as_is_prescribed() {
     // A block is sheared by its bottom and top, moved as a whole, and stretched by sets of a mesh that is given.
     let material = "materials: [Elastic(id: \"m\", E: 100, nu: 0.3, update: small)], bodies: [Solid(id: \"k\", mesh: \"MESH\", material: \"m\")]";
     for kind in ElementKind::ALL {
-        let block = scene(&format!(
+        let block = read(&format!(
             "(title: \"t\", nodes: [Block(id: \"k\", corners: [(0, 0), (2, 1)], elements: (2, 2), element: {})], {},
               history: (path: [0, 1], increment: 0.5))",
             kind.word(),
@@ -548,7 +543,7 @@ fn given(block: &Scene) -> Scene {
         set("k.top.all")
     )
     .unwrap();
-    scene(&text)
+    read(&text)
 }
 
 /// Rows of the table of contact patches: kinds and elements of the lower block (master) and of the upper one (slave), and how far
@@ -573,7 +568,7 @@ fn contact_rows() -> Vec<(String, [f64; 2])> {
 
 /// Tip of a cantilever of length 10 and depth 1 under a shear force at its end, over that of 60 x 6 elements quad9.
 fn cantilever(kind: ElementKind, elements: &str, nu: f64) -> f64 {
-    let run = finished(&scene(&format!(
+    let run = finished(&read(&format!(
         "(title: \"t\", nodes: [Block(id: \"k\", corners: [(0, 0), (10, 1)], elements: {elements}, element: {})],
           materials: [Elastic(id: \"m\", E: 1000, nu: {nu}, update: small)], bodies: [Solid(id: \"k\", mesh: \"k\", material: \"m\")],
           supports: [(node: \"k.left\", fix: [x, y])], loads: [Traction(along: \"k.right\", y: 0.01)],

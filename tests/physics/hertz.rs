@@ -1,7 +1,6 @@
 //! A rigid cylinder on a block, against Hertz.
 
-use crate::blocks::{finished, last};
-use crate::common::{number, order, scene, table};
+use crate::common::{finished, last, number, order, scene, table};
 
 /// Half width and peak pressure of the contact of `hertz-cylinder-on-block`, and the force on the whole cylinder.
 ///

@@ -1,6 +1,6 @@
 //! What must hold in every scene at every accepted increment, whatever its numbers.
 
-use crate::common::{force, go_on, run, scene};
+use crate::common::{finished, force, go_on, read, run, scene};
 use std::sync::Arc;
 use stickslip::format::spec::{LoadSpec, Nodes, Point, Spec};
 use stickslip::model::Mode;
@@ -151,9 +151,8 @@ const FRICTIONS: &str = r#"(title: "t",
 
 #[test]
 fn each_node_obeys_coulomb_with_its_own_friction_and_cohesion() {
-    let scene = Scene::from_text("frictions", FRICTIONS, &[]).unwrap_or_else(|e| panic!("{e}"));
-    let run = run(&scene);
-    assert!(run.failure.is_none(), "{:?}", run.failure);
+    let scene = read(FRICTIONS);
+    let run = finished(&scene);
     let slaves = &scene.model.contacts;
     let all = |friction: &dyn Fn(usize) -> Friction| -> Vec<String> {
         let one = |a| against_coulomb(&scene, a, friction);

@@ -1,6 +1,6 @@
 //! The laws of pairs against closed forms: penalty floors, elastic slip, ties, cohesion by area; and every way of solving them.
 
-use crate::common::{self, run, stepped};
+use crate::common::{self, finished, read, run, stepped};
 use std::sync::Arc;
 use stickslip::contact::table2::Rule;
 use stickslip::model::{Bond, Mode};
@@ -180,8 +180,7 @@ fn a_block_that_sticks_elastically_is_a_spring_in_series() {
         ..Block::default()
     };
     let scene = block.scene().unwrap();
-    let run = run(&scene);
-    assert!(run.failure.is_none(), "{:?}", run.failure);
+    let run = finished(&scene);
     let last = run.accepted.last().unwrap();
     for (contact, (state, found)) in scene
         .model
@@ -260,7 +259,7 @@ fn tall(tied: bool, settings: &str) -> Scene {
         // The middle of the right side of the upper element, from below.
         right = if tied { 2 } else { 6 },
     );
-    Scene::from_text("tall.ron", &text, &[]).unwrap_or_else(|error| panic!("{error}"))
+    read(&text)
 }
 
 #[test]

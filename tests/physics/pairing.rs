@@ -1,14 +1,13 @@
 //! Any pairing of slaves and masters: nodes of beams and of solids on chains of 2 to 9 nodes that belong to beams, to
 //! solids or to nobody, over borders of elements and corners of surfaces, from one body to the next.
 
-use crate::common::{Run, run, two_blocks};
+use crate::common::{Run, read, run, two_blocks};
 use stickslip::contact::projection::{project, projection_at};
 use stickslip::model::Mode;
-use stickslip::scene::Scene;
 
 /// A stated scene, run to its end.
 fn solved(text: &str) -> Run {
-    let scene = Scene::from_text("pairing", text, &[]).unwrap_or_else(|e| panic!("{e}"));
+    let scene = read(text);
     let done = run(&scene);
     if let Some((event, failure)) = &done.failure {
         panic!("load {}: {failure:?}", event.load_factor);

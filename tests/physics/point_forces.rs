@@ -8,7 +8,7 @@
 //!  ===
 //! ```
 
-use crate::common::{Run, order, run, scene, table};
+use crate::common::{Run, order, read, run, scene, table};
 use crate::references::{Row, error};
 use std::path::Path;
 use stickslip::model::Mode;
@@ -168,7 +168,7 @@ fn several_nodes_on_one_element_give_together() {
                 (name: \"q\", of: Displacement(node: \"q\", component: y)),
                 (name: \"r\", of: Displacement(node: \"r\", component: y))])"
         );
-        let scene = Scene::from_text("three", &text, &[]).unwrap_or_else(|e| panic!("{e}"));
+        let scene = read(&text);
         let run = finished(run(&scene));
         let last = run.accepted.last().unwrap();
         (["p", "q", "r"].map(|name| last.monitors[name]), last.majors)

@@ -1,7 +1,6 @@
 //! Problem 05, a cantilever beside an elastic block: its end, its work, its mesh, and what the paper's figures show.
 
-use crate::blocks::{finished, last};
-use crate::common::{Run, order, run, scene};
+use crate::common::{Run, finished, last, order, run, scene};
 
 const ROLES: [&str; 2] = [
     "05-cantilever-elastic-block",

@@ -1,6 +1,7 @@
 //! Random mesh scenes, judged from outside: `cargo bench --bench random_scenes -- 10000` runs many more. The judge itself is
 //! tried on states made wrong on purpose, one law at a time.
 
+use crate::common::read;
 use crate::outside::chain::{Chain, Place, Point, Seen as Sight};
 use crate::outside::families::{FAMILIES, draw};
 use crate::outside::judge::{Law, Pull, Scales, Seen, Verdict, judge};
@@ -93,7 +94,7 @@ fn bent(bend: f64, friction: Friction) -> Scene {
         left = -cos,
         low = -sin,
     );
-    Scene::from_text("bent", &text, &[]).unwrap_or_else(|e| panic!("{e}"))
+    read(&text)
 }
 
 /// The same node over two surfaces of one element each, which meet or cross at the origin.
@@ -114,7 +115,7 @@ fn two(one: [Point; 2], other: [Point; 2], friction: Friction) -> Scene {
         friction.angle,
         friction.cohesion,
     );
-    Scene::from_text("two", &text, &[]).unwrap_or_else(|e| panic!("{e}"))
+    read(&text)
 }
 
 /// What the judge says of a node that goes from one place to another and bears a force there; the scene's extent and largest

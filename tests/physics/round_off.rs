@@ -1,7 +1,7 @@
 //! What round-off leaves: nodes that press from a distance, springs so soft that their force is nothing, scenes far from the
 //! origin, and bodies far stiffer than others.
 
-use crate::common::{Run, run, scene};
+use crate::common::{Run, last, read, run, scene};
 use stickslip::scene::{Scene, precision};
 
 fn opened(name: &str, set: &[(&str, &str)]) -> Scene {
@@ -16,10 +16,6 @@ fn solved(scene: &Scene) -> Run {
         *scene.model.path.last().unwrap()
     );
     run
-}
-
-fn last(run: &Run, monitor: &str) -> f64 {
-    run.accepted.last().unwrap().monitors[monitor]
 }
 
 /// A block on another, with a penalty and a stick slope. With ties as printed no increment is refused for elastic slip, so
@@ -106,7 +102,7 @@ fn a_node_on_a_spring_whose_force_is_nothing_may_be_inside() {
         loads: [Force(node: \"a\", y: -1.0), Force(node: \"b\", y: -0.001)],
         history: (path: [0.0, 1.0], increment: 0.5),
         monitors: [(name: \"b\", of: Displacement(node: \"b\", component: y))])";
-    let run = solved(&Scene::from_text("soft.ron", text, &[]).unwrap_or_else(|e| panic!("{e}")));
+    let run = solved(&read(text));
     assert!((last(&run, "b") + 0.001).abs() < 1e-10);
 }
 
@@ -126,7 +122,7 @@ fn a_scene_far_from_the_origin_is_solved_to_its_own_round_off() {
                 "(0.0, 0.0), (1.0, 1.0)",
                 &format!("({x:?}, 0.0), ({:?}, 1.0)", 1.0 + x),
             );
-        solved(&Scene::from_text("blocks.ron", &moved, &[]).unwrap_or_else(|e| panic!("{e}")))
+        solved(&read(&moved))
     };
     let near = at(0.0);
     for x in [1e5, 1e7] {

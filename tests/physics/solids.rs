@@ -1,7 +1,7 @@
 //! Solids alone, against closed forms and beam theory.
 
-use crate::blocks::{block, finished, last};
-use crate::common::{Run, order, run};
+use crate::blocks::block;
+use crate::common::{Run, finished, last, order, run};
 use stickslip::format::spec::LoadSpec;
 use stickslip::model::Component;
 use stickslip::scene::Scene;

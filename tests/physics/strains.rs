@@ -1,8 +1,8 @@
 //! How far solids are deformed: principal stretches and det F against closed forms and finite differences, the range of each
 //! law against its force, and what becomes of states outside.
 
-use crate::blocks::{block, finished};
-use crate::common::{Run, run, scene};
+use crate::blocks::block;
+use crate::common::{Run, finished, read, run, scene};
 use stickslip::explain::page;
 use stickslip::explain::remedies::{TrialEnd, attempt};
 use stickslip::explain::remedy::Remedy;
@@ -24,7 +24,7 @@ fn unit(kind: &str, material: &str) -> Scene {
           loads: [Displacement(node: \"k.top.all\", component: y, value: -1)],
           history: (path: [0, 1], increment: 1))"
     );
-    Scene::from_text("unit", &text, &[]).unwrap_or_else(|e| panic!("{e}"))
+    read(&text)
 }
 
 /// Displacements of all nodes by a map of places.

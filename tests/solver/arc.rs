@@ -1,7 +1,7 @@
 //! Paths of equilibrium are followed past limit points and turning points: closed forms, corners met exactly, and what
 //! cannot be followed is said.
 
-use crate::common::{self, Accepted, Run, run};
+use crate::common::{self, Accepted, Run, finished, read, run};
 use crate::program::{program, rows, well};
 use std::sync::Arc;
 use stickslip::scene::Scene;
@@ -35,7 +35,7 @@ fn truss(history: &str) -> Scene {
     ],
 )"#
     );
-    Scene::from_text("truss", &text, &[]).unwrap_or_else(|e| panic!("{e}"))
+    read(&text)
 }
 
 /// The load that holds the truss where its upper end has gone down by `d`.
@@ -67,7 +67,7 @@ fn with_spring(load: &str, history: &str) -> Scene {
     ],
 )"#
     );
-    Scene::from_text("spring", &text, &[]).unwrap_or_else(|e| panic!("{e}"))
+    read(&text)
 }
 
 /// A node on springs (0.5 along x, 10 along y) is drawn over the rough ridge y = −x² from x = −0.5 on, where it just touches.
@@ -107,13 +107,7 @@ fn ridge_towards(way: f64, history: &str) -> Scene {
     ],
 )"#
     );
-    Scene::from_text("ridge", &text, &[]).unwrap_or_else(|e| panic!("{e}"))
-}
-
-fn finished(scene: &Scene) -> Run {
-    let run = run(scene);
-    assert!(run.failure.is_none(), "{:?}", run.failure);
-    run
+    read(&text)
 }
 
 /// How often a sequence turns round.

@@ -1,7 +1,7 @@
 //! Planted cycles: interface problems whose minor iterations are known beforehand, or are told by the iterations
 //! themselves; what finder, diagnosis and census say of them.
 
-use crate::common::{examined, run};
+use crate::common::{examined, read, run};
 use std::sync::Arc;
 use std::time::Instant;
 use stickslip::contact::record::ContactRecord;
@@ -51,7 +51,7 @@ fn smooth(m: &[Vec<f64>], gaps: &[f64], touching: &[usize]) -> Scene {
         history: History::default(),
         settings: by_table_2(),
     };
-    Scene::from_text("planted", &problem.text(&[]), &[]).unwrap_or_else(|e| panic!("{e}"))
+    read(&problem.text(&[]))
 }
 
 /// Each contact pushes the next one twice as far as itself: alone in touch, at a gap of 1, contact k would have to pull with

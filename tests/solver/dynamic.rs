@@ -1,7 +1,7 @@
 //! Damped motions past limit points: where a scene lets go and where it comes to rest, against closed forms, and whatever the
 //! increment.
 
-use crate::common::{Accepted, Run, run, scene};
+use crate::common::{Accepted, Run, finished, read, run, scene};
 use std::sync::Arc;
 use stickslip::scene::Scene;
 use stickslip::step::event::{MotionEvent, Outcome};
@@ -23,12 +23,6 @@ fn landings(run: &Run) -> Vec<(&Accepted, Motion)> {
         .collect()
 }
 
-fn finished(scene: &Scene) -> Run {
-    let run = run(scene);
-    assert!(run.failure.is_none(), "{:?}", run.failure);
-    run
-}
-
 const HEIGHT: f64 = 0.3;
 
 /// Two bars over a half span of 1, pressed down at their joint by the load factor; EA = 1.
@@ -42,7 +36,7 @@ fn truss(increment: f64, top: f64) -> Scene {
           monitors: [(name: \"u_y\", of: Displacement(node: \"b.2\", component: y)),
                      (name: \"u_x\", of: Displacement(node: \"b.2\", component: x))])"
     );
-    Scene::from_text("t.ron", &text, &[]).unwrap_or_else(|e| panic!("{e}"))
+    read(&text)
 }
 
 /// Load that holds the joint at height y: 2 EA (1 / l − 1 / L) y, l² = 1 + y².

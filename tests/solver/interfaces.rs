@@ -1,6 +1,6 @@
 //! Interface problems of other programs: read from every form with the same answer, condensed right, refused with a place.
 
-use crate::common::run;
+use crate::common::{finished, run};
 use crate::siconos::{answer, assert_solved};
 use proptest::prelude::*;
 use std::fs;
@@ -54,8 +54,7 @@ fn a_global_problem_is_condensed_to_its_contacts() {
     }
     let q = [0.5 + (-24.0 - 1.0) / 7.0, 0.25 + (6.0 + 2.0) / 7.0];
     assert!((found.q[0] - q[0]).abs() < 1e-14 && (found.q[1] - q[1]).abs() < 1e-14);
-    let run = run(&Scene::from_text("global.dat", GLOBAL, &[]).unwrap());
-    assert!(run.failure.is_none(), "{:?}", run.failure);
+    let run = finished(&Scene::from_text("global.dat", GLOBAL, &[]).unwrap());
     assert_solved(&found, &run);
 }
 
@@ -158,8 +157,7 @@ fn a_stiffness_is_marked_by_its_name_and_may_come_with_loads() {
         format!("{head} array real general\n2 1\n0.5\n0.25\n"),
     );
     // The same as the global problem: u = q + K⁻¹ (f + r).
-    let run = run(&open(&matrix));
-    assert!(run.failure.is_none(), "{:?}", run.failure);
+    let run = finished(&open(&matrix));
     assert_solved(&read(GLOBAL).unwrap(), &run);
 }
 
@@ -391,8 +389,7 @@ fn stored(folder: &TempDir, rest: &str) -> String {
 
 /// u and r of the one contact.
 fn solved(file: &str) -> ([f64; 2], [f64; 2], Mode) {
-    let run = run(&open(file));
-    assert!(run.failure.is_none(), "{:?}", run.failure);
+    let run = finished(&open(file));
     let (u, r) = answer(&run);
     let mode = run.stepper.state().nodes[0].mode;
     ([u[0], u[1]], [r[0], r[1]], mode)

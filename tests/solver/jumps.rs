@@ -1,6 +1,6 @@
 //! Jumps to another branch of equilibrium are found, said and decided on; other sudden motions are none.
 
-use crate::common::{self, Accepted, Run, run, scene};
+use crate::common::{self, Accepted, Run, finished, run, scene};
 use crate::program::{code, err, out, program};
 use stickslip::format::spec::LoadSpec;
 use stickslip::scene::Scene;
@@ -25,8 +25,7 @@ fn loads(run: &Run) -> Vec<f64> {
 #[test]
 fn a_block_that_is_thrown_over_its_edge_jumps_in_the_least_increment_and_is_marked() {
     let edge = |increment: &str| {
-        let run = run(&scene(EDGE, &[("history.increment", increment)]));
-        assert!(run.failure.is_none(), "{:?}", run.failure);
+        let run = finished(&scene(EDGE, &[("history.increment", increment)]));
         let at: Vec<usize> = (0..run.accepted.len())
             .filter(|&k| jumped(&run.accepted[k]))
             .collect();

@@ -1,6 +1,6 @@
 //! Limit loads, lost stability and jumps against closed forms and against scenes that were once passed without a word.
 
-use crate::common::{Accepted, Run, run, scene};
+use crate::common::{Accepted, Run, finished, read, run, scene};
 use crate::program::{code, err, out, program, rows};
 use std::path::Path;
 use stickslip::linear::stability::Stability;
@@ -88,8 +88,7 @@ fn a_block_on_a_wedge_is_not_tipped_without_a_word() {
 /// Below its shallow limit point the arch's top is above −0.3; beyond it the arch hangs. Arc length puts the limit at 1.9959.
 #[test]
 fn an_arch_that_snaps_through_under_load_control_is_marked_at_its_limit_load() {
-    let run = run(&found("arch-snaps-through.ron", &[]));
-    assert!(run.failure.is_none(), "{:?}", run.failure);
+    let run = finished(&found("arch-snaps-through.ron", &[]));
     for pair in run.accepted.windows(2) {
         let moved = (pair[1].monitors["u_y"] - pair[0].monitors["u_y"]).abs();
         assert_eq!(
@@ -160,9 +159,8 @@ fn a_column_is_marked_where_its_load_passes_euler_s() {
           materials: [Section(id: \"m\", EA: 1e6, EI: 1, GA: 1e6)], bodies: [Beam(id: \"b\", along: \"b\", material: \"m\")],
           supports: [(node: \"b.start\", fix: [x, y, rotation])], loads: [Force(node: \"b.end\", x: -1)],
           history: (path: [0, 3], increment: 0.01))";
-    let scene = Scene::from_text("t.ron", text, &[]).unwrap_or_else(|e| panic!("{e}"));
-    let run = run(&scene);
-    assert!(run.failure.is_none(), "{:?}", run.failure);
+    let scene = read(text);
+    let run = finished(&scene);
     let mark = first_mark(&run).expect("it is marked");
     // Looks are as far apart as their cost allows; where one finds it unstable, it is told since when it may be.
     let marked = run.accepted.iter().find(|a| jumped(a)).unwrap();

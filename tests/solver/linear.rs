@@ -1,6 +1,6 @@
 //! Bodies given by a matrix, endless floors, and what slave nodes bring along.
 
-use crate::common::run;
+use crate::common::{finished, read, run};
 use stickslip::format::condensed::{Contact, Matrix, Problem};
 use stickslip::format::spec::History;
 use stickslip::format::{Spec, notation};
@@ -162,7 +162,7 @@ fn contacts_and_a_matrix_are_a_scene_by_themselves() {
         Matrix::Stiffness(rows(0.0)),
         vec![],
     );
-    let read = Scene::from_text("t", text, &[]).unwrap_or_else(|e| panic!("{e}"));
+    let read = read(text);
     assert_eq!(read.spec, same.spec());
     let broken = text.replace("gap: 0.05", "gab: 0.05");
     let error = Scene::from_text("t", &broken, &[]).unwrap_err().to_string();
@@ -184,8 +184,7 @@ fn single(k: f64) -> Matrix {
 #[test]
 fn an_endless_floor_is_never_left() {
     let problem = problem(vec![contact("a", 0.0, [-1.0, 4e3])], single(1.0), vec![]);
-    let run = run(&scene(&problem, &[("slaves[0].start", "sliding")]));
-    assert!(run.failure.is_none(), "{:?}", run.failure);
+    let run = finished(&scene(&problem, &[("slaves[0].start", "sliding")]));
     let last = &run.accepted.last().unwrap().event.nodes[0];
     assert_eq!(last.decision.next, Mode::Sliding);
     assert!((last.f_n - 1.0).abs() < 1e-9 && last.spot.unwrap().xi.abs() > 1e3);
@@ -292,7 +291,7 @@ const GOOD: &str = "Matrix(id: \"m\", nodes: [\"a\"], stiffness: [[1.0, 0.0], [0
 #[test]
 fn each_fault_has_one_message_with_its_place() {
     let good = TEXT.replace("BODY", GOOD);
-    Scene::from_text("t.ron", &good, &[]).unwrap_or_else(|e| panic!("{e}"));
+    read(&good);
     let cases = [
         (
             "[[1.0, 0.0], [0.0, 1.0]]",

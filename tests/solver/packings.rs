@@ -1,6 +1,6 @@
 //! Interface problems with many contacts: packings of discs, whose forces are not unique, judged by their natural map.
 
-use crate::common::{Run, run};
+use crate::common::{Run, finished};
 use crate::packing::{global, local, natural_map};
 use std::fs;
 use stickslip::contact::table2::Rule;
@@ -34,8 +34,7 @@ fn forces_of_packings_obey_the_laws_and_are_said_not_to_be_unique() {
     for (columns, rows) in [(8, 8), (10, 10), (24, 16)] {
         let problem = local(columns, rows, 0.4);
         assert!(problem.mu.len() > FEW);
-        let run = run(&scene(&problem));
-        assert!(run.failure.is_none(), "{:?}", run.failure);
+        let run = finished(&scene(&problem));
         let error = natural_map(&problem, &forces(&run));
         assert!(error <= 1e-8, "{} contacts: {error:e}", problem.mu.len());
         let [accepted] = run.accepted.as_slice() else {
@@ -97,8 +96,7 @@ fn chain(contacts: usize) -> Local {
 #[test]
 fn modes_that_determine_the_forces_are_solved_for() {
     let problem = chain(400);
-    let run = run(&scene(&problem));
-    assert!(run.failure.is_none(), "{:?}", run.failure);
+    let run = finished(&scene(&problem));
     let error = natural_map(&problem, &forces(&run));
     assert!(error <= 1e-14, "{error:e}");
     assert_eq!(accuracy::natural_map(run.stepper.event()), None);
@@ -119,8 +117,7 @@ fn independent_parts_settle_each_by_itself() {
     both.w.columns += other.w.columns;
     both.q.extend(&other.q);
     both.mu.extend(&other.mu);
-    let run = run(&scene(&both));
-    assert!(run.failure.is_none(), "{:?}", run.failure);
+    let run = finished(&scene(&both));
     let forces = forces(&run);
     assert!(natural_map(&both, &forces) <= 1e-8);
     // Each part alone: the small one must not hide behind the forces of the large one.
@@ -163,8 +160,7 @@ fn many_contacts_are_read_alike_from_every_file() {
     assert_eq!(from_market.model.loads, from_siconos.model.loads);
     let text = siconos(&global(7, 7, 0.3));
     let condensed = Scene::from_text("g.dat", &text, &[]).unwrap();
-    let run = run(&condensed);
-    assert!(run.failure.is_none(), "{:?}", run.failure);
+    let run = finished(&condensed);
     assert!(natural_map(&problem, &forces(&run)) <= 1e-8);
 }
 

@@ -1,7 +1,7 @@
 //! Stability of accepted states, against closed forms and against a tangent by differences of forces that shares no code with
 //! the one of the solver: dense, with all multipliers, by its eigenvalues.
 
-use crate::common::{run, scene};
+use crate::common::{read, run, scene};
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -15,10 +15,6 @@ use stickslip::scene::Scene;
 use stickslip::step::state::State;
 use stickslip::step::stepper::Stepper;
 
-fn text(text: &str) -> Scene {
-    Scene::from_text("t.ron", text, &[]).unwrap_or_else(|e| panic!("{e}"))
-}
-
 /// Stability at the end of a scene without a failure.
 fn at_end(scene: &Scene) -> Stability {
     let mut run = run(scene);
@@ -29,7 +25,7 @@ fn at_end(scene: &Scene) -> Stability {
 /// A cantilever of length 1 and EI = 1 pressed along its axis. With EA = GA the axial and the shear strain, of first order in
 /// P / EA, cancel in the buckling load of Reissner's beam; without GA they vanish with 1 / EA.
 fn column(material: &str, load: f64) -> Scene {
-    text(&format!(
+    read(&format!(
         "(title: \"t\", nodes: [Line(id: \"b\", from: (0, 0), to: (1, 0), elements: 10, per_element: 5)],
           materials: [Section(id: \"m\", {material})], bodies: [Beam(id: \"b\", along: \"b\", material: \"m\")],
           supports: [(node: \"b.start\", fix: [x, y, rotation])], loads: [Force(node: \"b.end\", x: {})],
@@ -65,7 +61,7 @@ fn a_column_turns_unstable_at_each_of_its_buckling_loads() {
 fn a_truss_of_two_bars_is_unstable_between_its_limit_points() {
     let h = 0.3_f64;
     let truss = |down: f64| {
-        text(&format!(
+        read(&format!(
             "(title: \"t\", nodes: [Through(id: \"l\", points: [(-1, 0), (0, {h}), (1, 0)], per_element: 2)],
               materials: [Section(id: \"m\", EA: 1, EI: 1e-6, GA: 100)],
               bodies: [Beam(id: \"l\", along: \"l\", material: \"m\")],
@@ -128,7 +124,7 @@ fn a_node_that_slides_on_its_springs_diverges_where_friction_grows_faster_than_t
         (80.0, 60.0, 1.0),
         (80.0, 60.0, -1.0),
     ] {
-        let scene = text(&format!(
+        let scene = read(&format!(
             "(title: \"t\", nodes: [Node(id: \"s\", at: (0, 0)), Line(id: \"f\", from: (9, 0), to: (-9, 0), elements: 1, per_element: 2)],
               materials: [], bodies: [Matrix(id: \"k\", nodes: [\"s\"], stiffness: [[100, {k_xy}], [{k_xy}, 100]])],
               surfaces: [(id: \"f\", along: \"f\", endless: true)], slaves: [(nodes: [\"s\"], on: [\"f\"])],

@@ -1,7 +1,7 @@
 //! Strategies of the minor iterations: none accepts what is no Coulomb state, the ladder finds an answer wherever there
 //! is one, says so where there is none, and cuts the increment.
 
-use crate::common::{force_in, run, scene, stepped};
+use crate::common::{force_in, read, run, scene, stepped};
 use crate::hyperstatic::Numbers;
 use std::sync::Arc;
 use stickslip::contact::table2::Rule;
@@ -168,7 +168,7 @@ fn newtons_verdicts_on_the_frozen_problem_are_the_steppers_where_the_bodies_are_
         ("settings.solver", "condensed"),
     ];
     let blocks = include_str!("../benches/two-blocks-pressed-sheared.ron");
-    let blocks = Scene::from_text("blocks", blocks, &[]).unwrap_or_else(|e| panic!("{e}"));
+    let blocks = read(blocks);
     let blocks = set.iter().fold(blocks, |scene, (path, value)| {
         scene.with(path, value).unwrap()
     });
@@ -349,7 +349,7 @@ fn a_loose_body_is_still_told_and_no_contact_without_force_holds_it() {
         surfaces: [(id: \"floor\", along: \"floor\")], slaves: [(nodes: [\"beam.start\", \"beam.end\"], on: [\"floor\"], start: free)], \
         friction: (angle: 30), supports: [], loads: [Force(node: \"beam.end\", x: 1, y: 1)], \
         history: (path: [0, 1], increment: 1))";
-    let scene = Scene::from_text("loose", text, &[]).unwrap_or_else(|e| panic!("{e}"));
+    let scene = read(text);
     let run = run(&scene);
     let (_, failure) = run.failure.unwrap();
     assert!(

@@ -76,8 +76,6 @@ pub fn widened(friction: &Friction, half: f64) -> Friction {
 /// (radians) under the normal force `f_n`. Below it the node slides back along the side it came from, which has this `friction`.
 /// F_n and F_t refer to the mean of the two normals.
 pub fn least_friction(friction: &Friction, half: f64, f_n: f64) -> f64 {
-    #[cfg(mutants)]
-    let half = crate::mutants::pick("corner-turned-the-other-way", half, -half);
     let slope = (friction.angle.to_radians() - half).tan();
     let (sin, cos) = half.sin_cos();
     let pressed = f_n - friction.cohesion * sin;
@@ -101,8 +99,6 @@ pub fn beyond_corner(force: [f64; 2], sides: [&Side; 2]) -> f64 {
 pub fn beyond_slid(force: [f64; 2], [along, far]: [&Side; 2], against: f64) -> f64 {
     let [f_n, f_t] = along.components(force);
     let lacks = along.coefficient * f_n + along.cohesion - against * f_t;
-    #[cfg(mutants)]
-    let lacks = crate::mutants::pick("corner-law-without-the-slip", lacks, 0.0);
     let length = (1.0 + along.coefficient * along.coefficient).sqrt();
     beyond_hull(force, [along, far], &[against]).max(lacks / length)
 }

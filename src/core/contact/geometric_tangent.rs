@@ -83,12 +83,6 @@ pub fn geometric_tangent(
     let gap = -a / m * (j.tilt * i.travel + i.tilt * j.travel)
         + projection.gap / m * i.tilt * j.tilt
         - k * a / m * i.travel * j.travel;
-    #[cfg(mutants)]
-    let gap = crate::mutants::pick(
-        "geometric-tangent-without-gap",
-        gap,
-        gap - projection.gap / m * i.tilt * j.tilt,
-    );
     let slip = (j.tilt + k * j.travel) * i.normal / m.sqrt() - i.stretch * j.travel;
     force[0] * gap + force[1] * slip
 }

@@ -124,10 +124,6 @@ pub fn closest_point(
             {
                 continue;
             }
-            #[cfg(mutants)]
-            if previous.is_some() && crate::mutants::is_active("node-kept-on-its-element") {
-                continue;
-            }
             let spot = SurfacePoint {
                 surface,
                 element,
@@ -345,8 +341,6 @@ fn normal_at(
         return own;
     };
     let across = slope_at(surface, other, xi, positions);
-    #[cfg(mutants)]
-    let across = crate::mutants::pick("normal-of-one-side-at-a-border", across, slope);
     mean_normal(slope, across)
 }
 

@@ -99,8 +99,6 @@ fn walk(surface: &Surface, from: SurfacePoint, to: SurfacePoint, positions: &[[f
         return part(from.element, from.xi, to.xi);
     }
     let between = from.element + 1..to.element;
-    #[cfg(mutants)]
-    let between = crate::mutants::pick("drift-leaves-elements-out", between, 0..0);
     part(from.element, from.xi, 1.0)
         + between.map(|element| part(element, -1.0, 1.0)).sum::<f64>()
         + part(to.element, -1.0, to.xi)

@@ -77,15 +77,6 @@ pub enum FrictionBound {
 
 /// Table 1's equations of a node in a mode: normal, then tangential.
 pub fn equations(mode: Mode, known: &SlipDirection) -> [Equation; 2] {
-    #[cfg(mutants)]
-    let known = &crate::mutants::pick(
-        "sticking-keeps-the-slip",
-        *known,
-        SlipDirection {
-            slip: 0.0,
-            ..*known
-        },
-    );
     let normal = Equation {
         motion: RelativeMotion::Normal,
         d_n: 0.0,
@@ -150,15 +141,6 @@ fn sliding(known: &SlipDirection) -> Equation {
 
 /// T_max = sign (tan φ |F_n| + c), eqn (20); `sign` is the direction of the tangential force (−1, 1, or 0 if unknown).
 pub fn t_max(friction: &Friction, f_n: f64, sign: f64) -> f64 {
-    #[cfg(mutants)]
-    let friction = &crate::mutants::pick(
-        "t-max-without-cohesion",
-        *friction,
-        Friction {
-            cohesion: 0.0,
-            ..*friction
-        },
-    );
     (f_n.abs() * friction.coefficient() + friction.cohesion) * sign
 }
 
@@ -166,8 +148,6 @@ pub fn t_max(friction: &Friction, f_n: f64, sign: f64) -> f64 {
 /// |slip| > `tiny_slip`; else `had`. The slip counts because a node that starts to slide without a force would otherwise stay
 /// without friction forever.
 pub fn direction(f_t: f64, tiny_force: f64, slip: f64, tiny_slip: f64, had: f64) -> f64 {
-    #[cfg(mutants)]
-    let slip = crate::mutants::pick("t-max-along-the-slip-of-the-node", slip, -slip);
     if f_t.abs() > tiny_force {
         f_t.signum()
     } else if slip.abs() > tiny_slip {

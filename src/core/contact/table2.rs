@@ -263,8 +263,6 @@ pub fn decide(numbers: &Numbers, ties: &Ties) -> Decision {
         }
         Mode::Fixed => {
             let (shear, limit) = (numbers.f_t.abs(), numbers.t_max.abs());
-            #[cfg(mutants)]
-            let limit = crate::mutants::pick("friction-bound-with-its-sign", limit, numbers.t_max);
             let test = ties.test(
                 TestedQuantity::ShearForce,
                 shear,
@@ -284,8 +282,6 @@ pub fn decide(numbers: &Numbers, ties: &Ties) -> Decision {
             } else {
                 numbers.t_max.signum() * numbers.slip
             };
-            #[cfg(mutants)]
-            let slip = crate::mutants::pick("sliding-sticks-by-unsigned-slip", slip, numbers.slip);
             let test = ties.test(TestedQuantity::Slip, slip, 0.0, slip, ties.length);
             if ties.switches(&test, false) {
                 (Mode::Fixed, Rule::SlidingSticks, [Some(opens), Some(test)])

@@ -274,9 +274,6 @@ impl PressedElement {
                 let share = size * weight * n[i];
                 for j in 0..m {
                     let (turned, wider) = (share * width * d[j], share * widening * n[j]);
-                    #[cfg(mutants)]
-                    let turned =
-                        crate::mutants::pick("pressure-tangent-does-not-turn", turned, 0.0);
                     add(2 * i, 2 * j, -wider * slope[1]);
                     add(2 * i, 2 * j + 1, -turned);
                     add(2 * i + 1, 2 * j, turned + wider * slope[0]);

@@ -317,10 +317,6 @@ impl<'a> Walk<'a> {
             return;
         };
         for (choice, &assumed) in self.problem.nodes[place].choices().iter().enumerate() {
-            #[cfg(mutants)]
-            if assumed == AssumedMode::Minus && crate::mutants::is_active("census-slides-one-way") {
-                continue;
-            }
             self.assumed[place] = assumed;
             if self.reduce(2 * depth, place, choice, 0)
                 && self.reduce(2 * depth + 1, place, choice, 1)

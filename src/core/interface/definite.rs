@@ -19,6 +19,8 @@ pub struct Compliance<'a> {
     problem: &'a InterfaceProblem,
     /// W of all components (length per force).
     whole: DMatrix<f64>,
+    /// Motions without changes of forces (length).
+    still: DVector<f64>,
     /// Numbers of the examined components.
     kept: Vec<usize>,
     /// Eigenvalues and eigenvectors of the symmetric part.
@@ -28,13 +30,9 @@ pub struct Compliance<'a> {
 impl<'a> Compliance<'a> {
     /// The compliance. `None` if it does not exist because a body is loose, or if no component can vary.
     pub fn from_problem(problem: &'a InterfaceProblem) -> Option<Self> {
-        let relation = &problem.relation;
-        let count = relation.count();
-        let response = DMatrix::from_column_slice(count, count, &relation.response);
-        let mut whole = -response.try_inverse()?;
-        for k in 0..count {
-            whole[(k, k)] -= 1.0 / relation.stiffness;
-        }
+        let count = problem.relation.count();
+        let bodies = problem.relation.compliance()?;
+        let whole = DMatrix::from_vec(count, count, bodies.w);
         let mut kept = Vec::new();
         for (place, node) in problem.nodes.iter().enumerate() {
             let [normal, tangential] = node.moves();
@@ -45,7 +43,7 @@ impl<'a> Compliance<'a> {
                 kept.push(2 * place + 1);
             }
         }
-        if kept.is_empty() || whole.iter().any(|x| !x.is_finite()) {
+        if kept.is_empty() {
             return None;
         }
         let both =
@@ -55,6 +53,7 @@ impl<'a> Compliance<'a> {
         Some(Compliance {
             problem,
             whole,
+            still: bodies.still.into(),
             kept,
             parts,
         })
@@ -108,9 +107,7 @@ impl<'a> Compliance<'a> {
             whole[(k, k)] += 1.0 / stiffness;
         }
         let response = -whole.try_inverse()?;
-        // The motions without forces are −R⁻¹ start.
-        let had = DMatrix::from_column_slice(count, count, &relation.response);
-        let start = &response * had.try_inverse()? * DVector::from_column_slice(&relation.start);
+        let start = &response * &self.still;
         if response.iter().chain(&start).any(|x| !x.is_finite()) {
             return None;
         }

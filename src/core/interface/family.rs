@@ -6,21 +6,17 @@
 //! census finds its corners, where the acting forces are uniquely determined; states in between solve singular equations and
 //! count as such.
 //!
-//! W need not be computed: d causes no motion if (I + R / k) d = 0, where R is the response of the interface to z with springs of
-//! stiffness k ([`crate::interface::response`]); this product is k W d / (k W + 1), and finite for loose bodies too.
-//!
 //! Constant forces: those of nodes that do not touch, those carried by supports, and those of a node with cohesion but without
 //! pressure, because it would jump.
 
 use crate::InterfaceProblem;
 use crate::interface::census::{Census, Consistent};
 use crate::interface::feasible::BoundedForms;
+use crate::interface::vertex::{motionless, orthonormal};
 use nalgebra::DMatrix;
 
 /// Relative tolerance for equal or zero gaps and slips (times the problem's length).
 const SAME: f64 = 1e-9;
-/// Forces d cause no motion if their motions are below this fraction of those of other forces.
-const MOVES_NOTHING: f64 = 1e-9;
 /// Tolerance for equal forces, relative to the largest force of a state.
 const SAME_FORCE: f64 = 1e-6;
 /// Largest forces up to which a family is followed, relative to the largest force of a state.
@@ -75,17 +71,6 @@ fn moves_alike(problem: &InterfaceProblem, a: &Consistent, b: &Consistent) -> bo
         .all(|(a, b)| near(a.gap, b.gap) && near(a.slip, b.slip))
 }
 
-/// How a node's force can vary.
-#[derive(Debug, Clone, Copy)]
-enum FamilyDirection {
-    /// Only F_n: without friction, or a support carries F_t.
-    Normal(usize),
-    /// F_n together with F_t = ± tan φ F_n + c.
-    Limit(usize, f64),
-    /// F_n, and F_t within the limit.
-    Both(usize),
-}
-
 /// Forces without motion, about a mean of states with equal motions; in multiples of `unit`.
 struct ForceFamily<'a> {
     problem: &'a InterfaceProblem,
@@ -93,19 +78,16 @@ struct ForceFamily<'a> {
     unit: f64,
     /// F_n and F_t of the mean state.
     force: Vec<[f64; 2]>,
-    /// The touching nodes with variable forces.
-    ways: Vec<(usize, FamilyDirection)>,
-    /// Columns: directions. Rows: components, in the order of `ways`.
-    directions: DMatrix<f64>,
+    /// The touching nodes with variable forces, and whether their F_t varies within the limit: others slide, have no friction, or
+    /// a support carries F_t.
+    variable: Vec<(usize, bool)>,
+    /// Orthonormal directions, two entries per node.
+    directions: Vec<Vec<f64>>,
 }
 
 impl<'a> ForceFamily<'a> {
     /// `None` if every force causes motion.
     fn from_states(problem: &'a InterfaceProblem, states: &[&Consistent]) -> Option<Self> {
-        let relation = &problem.relation;
-        if relation.stiffness.is_infinite() {
-            return None;
-        }
         let unit = states
             .iter()
             .flat_map(|state| &state.answer.nodes)
@@ -119,7 +101,7 @@ impl<'a> ForceFamily<'a> {
                 sum.map(|x| x / states.len() as f64 / unit)
             })
             .collect();
-        let (mut ways, mut columns) = (Vec::new(), Vec::new());
+        let (mut variable, mut columns) = (Vec::new(), Vec::new());
         for (place, node) in problem.nodes.iter().enumerate() {
             let at = &states[0].answer.nodes[place];
             let [normal, tangential] = node.moves();
@@ -127,79 +109,55 @@ impl<'a> ForceFamily<'a> {
             if !normal || jumps || at.gap.abs() > SAME * problem.length {
                 continue;
             }
-            let first = columns.len();
-            let tangent = node.friction.coefficient();
-            let unit = |k: usize| vec![(2 * place + k, 1.0)];
-            let way = if node.friction.is_smooth() || !tangential {
-                columns.push(unit(0));
-                FamilyDirection::Normal(first)
-            } else if at.slip.abs() > SAME * problem.length {
-                let slope = tangent * at.slip.signum();
-                columns.push(vec![(2 * place, 1.0), (2 * place + 1, slope)]);
-                FamilyDirection::Limit(first, slope)
-            } else {
-                columns.extend([unit(0), unit(1)]);
-                FamilyDirection::Both(first)
+            let rough = tangential && !node.friction.is_smooth();
+            let slips = at.slip.abs() > SAME * problem.length;
+            let slope = match (rough, slips) {
+                (true, true) => node.friction.coefficient() * at.slip.signum(),
+                _ => 0.0,
             };
-            ways.push((place, way));
+            columns.push((place, [1.0, slope]));
+            if rough && !slips {
+                columns.push((place, [0.0, 1.0]));
+            }
+            variable.push((place, rough && !slips));
         }
-        // The effect on motions: (I + R / k) of each column.
-        let count = relation.count();
-        let entry = |i: usize, column: &[(usize, f64)]| -> f64 {
-            column
-                .iter()
-                .map(|&(j, times)| {
-                    let one = if i == j { 1.0 } else { 0.0 };
-                    times * (one + relation.response[j * count + i] / relation.stiffness)
-                })
-                .sum()
-        };
-        if columns.is_empty() {
-            return None;
-        }
-        let motions = DMatrix::from_fn(count, columns.len(), |i, j| entry(i, &columns[j]));
-        let parts = motions.svd(false, true);
-        let (sizes, rows) = (parts.singular_values, parts.v_t?);
-        let still: Vec<usize> = (0..sizes.len())
-            .filter(|&k| sizes[k] <= MOVES_NOTHING * sizes.max())
-            .collect();
-        (!still.is_empty()).then(|| ForceFamily {
+        let mut directions = motionless(problem, &columns);
+        orthonormal(&mut directions);
+        (!directions.is_empty()).then_some(ForceFamily {
             problem,
             unit,
             force,
-            ways,
-            directions: DMatrix::from_fn(columns.len(), still.len(), |i, j| rows[(still[j], i)]),
+            variable,
+            directions,
         })
     }
 
     /// Its dimension and ranges; `None` if the friction cones exclude it.
     fn family(&self) -> Option<(usize, Vec<Range>)> {
-        let size = self.directions.ncols();
+        let size = self.directions.len();
         let mut forms = Vec::new();
         for k in 0..size {
             forms.extend((0..=size).map(|j| if j == k { 1.0 } else { 0.0 }));
         }
         // F_n of each node, then F_t; then quantities that must not be negative.
         let mut asked = Vec::new();
-        for (place, way) in &self.ways {
-            let [f_n, f_t] = self.of_node(*place, *way);
-            asked.push((forms.len() / (size + 1), *place));
+        for &(place, _) in &self.variable {
+            let [f_n, f_t] = self.of_node(place);
+            asked.push((forms.len() / (size + 1), place));
             forms.extend(f_n.iter().chain(&f_t).copied());
         }
         let mut bounded: Vec<usize> = asked.iter().map(|(form, _)| *form).collect();
-        for (place, way) in &self.ways {
-            if let FamilyDirection::Both(_) = way {
-                let friction = &self.problem.nodes[*place].friction;
-                let cohesion = friction.cohesion / self.unit;
-                let [f_n, f_t] = self.of_node(*place, *way);
-                for sign in [-1.0, 1.0] {
-                    bounded.push(forms.len() / (size + 1));
-                    let pairs = f_n.iter().zip(&f_t).enumerate();
-                    forms.extend(pairs.map(|(k, (n, t))| {
-                        let given = if k == size { cohesion } else { 0.0 };
-                        friction.coefficient() * n + sign * t + given
-                    }));
-                }
+        for &(place, _) in self.variable.iter().filter(|(_, within)| *within) {
+            let friction = &self.problem.nodes[place].friction;
+            let cohesion = friction.cohesion / self.unit;
+            let [f_n, f_t] = self.of_node(place);
+            for sign in [-1.0, 1.0] {
+                bounded.push(forms.len() / (size + 1));
+                let pairs = f_n.iter().zip(&f_t).enumerate();
+                forms.extend(pairs.map(|(k, (n, t))| {
+                    let given = if k == size { cohesion } else { 0.0 };
+                    friction.coefficient() * n + sign * t + given
+                }));
             }
         }
         let rows = |form: usize| forms[form * (size + 1)..(form + 1) * (size + 1) - 1].to_vec();
@@ -250,23 +208,10 @@ impl<'a> ForceFamily<'a> {
     }
 
     /// F_n and F_t of a node: one coefficient per direction, and the constant.
-    fn of_node(&self, place: usize, way: FamilyDirection) -> [Vec<f64>; 2] {
-        let size = self.directions.ncols();
-        let [f_n, f_t] = self.force[place];
-        let form = |row: Option<(usize, f64)>, constant: f64| -> Vec<f64> {
-            (0..size)
-                .map(|k| row.map_or(0.0, |(row, times)| times * self.directions[(row, k)]))
-                .chain([constant])
-                .collect()
-        };
-        match way {
-            FamilyDirection::Normal(row) => [form(Some((row, 1.0)), f_n), form(None, f_t)],
-            FamilyDirection::Limit(row, slope) => {
-                [form(Some((row, 1.0)), f_n), form(Some((row, slope)), f_t)]
-            }
-            FamilyDirection::Both(row) => {
-                [form(Some((row, 1.0)), f_n), form(Some((row + 1, 1.0)), f_t)]
-            }
-        }
+    fn of_node(&self, place: usize) -> [Vec<f64>; 2] {
+        [0, 1].map(|k| {
+            let along = self.directions.iter().map(|along| along[2 * place + k]);
+            along.chain([self.force[place][k]]).collect()
+        })
     }
 }

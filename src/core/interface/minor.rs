@@ -129,8 +129,6 @@ fn record(
         decision.rule = Rule::OffSurface;
         (decision.next, decision.wanted, decision.tests) = (Mode::Free, Mode::Free, [None; 2]);
     } else if let Forced::Held(mode) = node.forced {
-        #[cfg(mutants)]
-        let mode = crate::mutants::pick("held-mode-obeys-table-2", mode, decision.next);
         decision.next = mode;
         if decision.wanted != mode {
             decision.rule = Rule::Held;

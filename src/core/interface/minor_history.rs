@@ -53,8 +53,6 @@ impl Input {
 
     /// Whether the modes are equal, T_max differs by at most `force`, and ρ by at most `ratio` (1 + |ρ|).
     fn repeats(&self, other: &Input, force: f64, ratio: f64) -> bool {
-        #[cfg(mutants)]
-        let force = crate::mutants::pick("cycle-by-modes-alone", force, f64::INFINITY);
         self.mode == other.mode
             && (self.t_max - other.t_max).abs() <= force
             && (self.ratio - other.ratio).abs()

@@ -8,6 +8,7 @@
 //!
 //! For infinite k, z is the motion itself. Springs with finite k make the response exist if only contact supports a body.
 
+use crate::linalg::DenseFactors;
 use crate::{Equation, RelativeMotion};
 use serde::{Deserialize, Serialize};
 
@@ -22,7 +23,40 @@ pub struct InterfaceResponse {
     pub response: Vec<f64>,
 }
 
+/// Motions of the bodies without the springs, for given forces: −v = still + W ΔF with W = −(R⁻¹ + 1/k), still = R⁻¹ start.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FreeMotion {
+    /// W (length per force), column-major.
+    pub w: Vec<f64>,
+    /// −v without changes of forces (length).
+    pub still: Vec<f64>,
+    /// Estimated norm of the inverse of the scaled R; if it is large, W is inaccurate.
+    pub inverse_norm: f64,
+}
+
 impl InterfaceResponse {
+    /// The compliance. `None` if the bodies are unsupported without contact, or memory is insufficient.
+    pub fn compliance(&self) -> Option<FreeMotion> {
+        let count = self.count();
+        let mut w = vec![0.0; count * count];
+        w.iter_mut().step_by(count + 1).for_each(|x| *x = 1.0);
+        w.extend(&self.start);
+        let mut dense = DenseFactors::new(count, count + 1).ok()?;
+        dense.factor(&self.response);
+        let inverse_norm = dense.inverse_norm();
+        dense.solve(&mut w).ok()?;
+        let still = w.split_off(count * count);
+        w.iter_mut().for_each(|x| *x = -*x);
+        for x in w.iter_mut().step_by(count + 1) {
+            *x -= 1.0 / self.stiffness;
+        }
+        Some(FreeMotion {
+            w,
+            still,
+            inverse_norm,
+        })
+    }
+
     /// Number of entries of z: 2 per slave node.
     pub fn count(&self) -> usize {
         self.start.len()

@@ -15,7 +15,6 @@
 
 use crate::interface::blocks::Blocks;
 use crate::interface::cone_law::local;
-use crate::linalg::DenseFactors;
 use crate::{AssumedMode, Friction, InterfaceProblem, ProblemNode};
 use std::ops::Range;
 use std::sync::Arc;
@@ -104,35 +103,17 @@ pub trait LocalLaw<const D: usize> {
 impl Sweep {
     /// Starts without forces. `None` if the bodies are unsupported without contact, or memory is insufficient.
     pub fn new(problem: &InterfaceProblem) -> Option<Self> {
-        let (relation, count) = (&problem.relation, problem.relation.count());
-        // motion = R⁻¹ (ΔF − start) + ΔF / k.
-        let mut solved = vec![0.0; count * (count + 1)];
-        for j in 0..count {
-            solved[j * count + j] = 1.0;
-        }
-        let last = count * count;
-        for (to, start) in solved[last..].iter_mut().zip(&relation.start) {
-            *to = -start;
-        }
-        let mut dense = DenseFactors::new(count, count + 1).ok()?;
-        dense.factor(&relation.response);
-        if dense.inverse_norm() > SINGULAR {
+        let bodies = problem.relation.compliance()?;
+        if bodies.inverse_norm > SINGULAR {
             return None;
         }
-        dense.solve(&mut solved).ok()?;
-        let mut free = solved.split_off(last);
-        free.iter_mut().for_each(|x| *x = -*x);
-        let mut compliance = solved;
-        compliance.iter_mut().for_each(|x| *x = -*x);
-        for j in 0..count {
-            compliance[j * count + j] -= 1.0 / relation.stiffness;
-        }
+        let mut free = bodies.still;
         for (place, node) in problem.nodes.iter().enumerate() {
             let (n, t) = (2 * place, 2 * place + 1);
             free[n] += node.kinematics.map_or(0.0, |over| over.gap) - node.prescribed[0];
             free[t] -= node.state.slipped(&problem.settings) + node.prescribed[1];
         }
-        let compliance = Blocks::<2>::from_dense(problem.nodes.len(), &compliance);
+        let compliance = Blocks::<2>::from_dense(problem.nodes.len(), &bodies.w);
         // The initial motions are those without forces.
         for (place, node) in problem.nodes.iter().enumerate() {
             compliance.add_column(place, [-node.state.f_n, -node.state.f_t], &mut free);

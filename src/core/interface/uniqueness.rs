@@ -142,8 +142,7 @@ struct CompliancePart {
 
 impl CompliancePart {
     fn from_problem(problem: &InterfaceProblem) -> Result<CompliancePart, Inapplicable> {
-        let relation = &problem.relation;
-        let count = relation.count();
+        let count = problem.relation.count();
         let mut kept = Vec::new();
         let mut pairs = Vec::new();
         let mut carried = false;
@@ -166,32 +165,15 @@ impl CompliancePart {
                 kept.push(2 * place + 1);
             }
         }
-        // F changes by R z, motions by z + R z / k: e = −W d with W = −(R⁻¹ + 1/k).
-        let mut factors = DenseFactors::new(count, count).map_err(|_| Inapplicable::Singular)?;
-        factors.factor(&relation.response);
-        let norm = factors.inverse_norm();
-        if norm > SINGULAR {
-            return Err(Inapplicable::Singular);
-        }
-        let mut inverse = vec![0.0; count * count];
-        for k in 0..count {
-            inverse[k * count + k] = 1.0;
-        }
-        let solved = factors.solve(&mut inverse);
-        solved.map_err(|_| Inapplicable::Singular)?;
+        // Motions change by W ΔF: e = −W d.
+        let bodies = problem.relation.compliance();
+        let bodies = bodies.filter(|bodies| bodies.inverse_norm <= SINGULAR);
+        let bodies = bodies.ok_or(Inapplicable::Singular)?;
         let size = kept.len();
-        let entry = |i: usize, j: usize| {
-            let spring = if i == j {
-                1.0 / relation.stiffness
-            } else {
-                0.0
-            };
-            -inverse[j * count + i] - spring
-        };
         let mut rows: Vec<f64> = kept
             .iter()
             .flat_map(|&i| kept.iter().map(move |&j| (i, j)))
-            .map(|(i, j)| entry(i, j))
+            .map(|(i, j)| bodies.w[j * count + i])
             .collect();
         let mean = (0..size).map(|k| rows[k * size + k]).sum::<f64>() / size.max(1) as f64;
         if mean <= 0.0 && size > 0 {
@@ -203,7 +185,7 @@ impl CompliancePart {
             size,
             matrix: (0..size * size).map(both).collect(),
             rows,
-            round_off: ROUND_OFF.max(1e-15 * norm),
+            round_off: ROUND_OFF.max(1e-15 * bodies.inverse_norm),
             pairs,
             carried,
         };

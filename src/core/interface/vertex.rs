@@ -19,7 +19,20 @@ pub type NodeForce = (AssumedMode, [f64; 2]);
 /// Changes modes and forces (one entry per node) such that no forces in these modes are without motion. The motions stay the
 /// same, and the forces obey Coulomb's law if they did before.
 pub fn vertex(problem: &InterfaceProblem, nodes: &mut [NodeForce]) {
-    let mut still = motionless(problem, nodes);
+    let directions: Vec<_> = nodes
+        .iter()
+        .enumerate()
+        .flat_map(|(place, (does, _))| {
+            let coefficient = problem.nodes[place].friction.coefficient();
+            let own: &[[f64; 2]] = match does {
+                AssumedMode::Free => &[],
+                AssumedMode::Fixed => &[[1.0, 0.0], [0.0, 1.0]],
+                does => &[[1.0, does.sign() * coefficient]],
+            };
+            own.iter().map(|parts| (place, *parts)).collect::<Vec<_>>()
+        })
+        .collect();
+    let mut still = motionless(problem, &directions);
     orthonormal(&mut still);
     while let Some(along) = still.last() {
         let Some(bound) = nearest(problem, nodes, along) else {
@@ -44,7 +57,7 @@ pub fn vertex(problem: &InterfaceProblem, nodes: &mut [NodeForce]) {
 }
 
 /// Gram-Schmidt orthogonalisation, applied twice; removes dependent vectors.
-fn orthonormal(still: &mut Vec<Vec<f64>>) {
+pub(super) fn orthonormal(still: &mut Vec<Vec<f64>>) {
     let mut done: Vec<Vec<f64>> = Vec::with_capacity(still.len());
     for mut along in still.drain(..) {
         let size = dot(&along, &along).sqrt();
@@ -175,21 +188,16 @@ fn nearest(problem: &InterfaceProblem, nodes: &[NodeForce], along: &[f64]) -> Op
     found.filter(|bound| bound.open)
 }
 
-/// Basis of the touching nodes' forces, in these modes, that cause no motion; two entries per node.
+/// Basis of the forces that cause no motion among those along these directions (node, parts of F_n and F_t); two entries per node.
 ///
-/// These form the null space of (I + R / k). Its columns for the nodes' forces are eliminated with the largest remaining entry as
-/// pivot.
-pub fn motionless(problem: &InterfaceProblem, nodes: &[NodeForce]) -> Vec<Vec<f64>> {
+/// W need not be computed: these form the null space of (I + R / k), where R is the response of the interface to z with springs of
+/// stiffness k ([`crate::interface::response`]); this product is k W d / (k W + 1), and finite for loose bodies too. Its columns for
+/// the directions are eliminated with the largest remaining entry as pivot.
+pub(super) fn motionless(
+    problem: &InterfaceProblem,
+    directions: &[(usize, [f64; 2])],
+) -> Vec<Vec<f64>> {
     let (relation, count) = (&problem.relation, problem.relation.count());
-    let mut directions: Vec<(usize, [f64; 2])> = Vec::new();
-    for (place, (does, _)) in nodes.iter().enumerate() {
-        let coefficient = problem.nodes[place].friction.coefficient();
-        match does {
-            AssumedMode::Free => {}
-            AssumedMode::Fixed => directions.extend([(place, [1.0, 0.0]), (place, [0.0, 1.0])]),
-            does => directions.push((place, [1.0, does.sign() * coefficient])),
-        }
-    }
     let mut columns: Vec<Vec<f64>> = directions
         .iter()
         .map(|&(place, parts)| {

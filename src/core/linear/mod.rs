@@ -1,8 +1,7 @@
 //! The linearised equations of a major iteration, behind the trait [`source::Source`].
 //!
-//! - [`source`]: what the stepper needs from the deformable part; [`bodies`]: the program's bodies as a source; [`constant`]: a
-//!   constant interface response as a source; [`sparse`]: contacts with a sparse compliance as a source, and
-//!   [`sparse_contacts`], which recognises them.
+//! - [`source`]: what the stepper needs from the deformable part; [`bodies`]: the program's bodies as a source; [`sparse`]:
+//!   contacts with a sparse compliance as a source, and [`sparse_contacts`], which recognises them.
 //! - `system`: the linearised system of the bodies; `residual`: its out-of-balance forces; [`norms`]: their norms; `sizes`: force
 //!   scales and round-off levels.
 //! - `augmented` (eqn 9) and `reduced` (eqn 6): the two methods for minor iterations; `condensation`: condenses the bodies;
@@ -18,7 +17,6 @@ mod border;
 mod bordered;
 mod condensation;
 pub mod condensed;
-pub mod constant;
 mod coupling;
 mod drag;
 pub mod estimate;

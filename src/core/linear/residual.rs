@@ -42,8 +42,6 @@ impl System {
             }
         }
         let tolerance = at.chosen.tolerance;
-        #[cfg(mutants)]
-        let tolerance = crate::mutants::pick("tolerance-widened", tolerance, 1e4 * tolerance);
         let mut scale = self.sizes.reference.max(self.sizes.least_scale(tolerance));
         let (mut force, mut length) = (0.0_f64, 0.0_f64);
         for (d, equation) in model.dofs.equation.iter().enumerate() {
@@ -186,10 +184,6 @@ impl System {
 
     /// Internal force minus applied load at a degree of freedom: the force from the support or surface.
     pub fn nodal_force(&self, dof: usize) -> f64 {
-        #[cfg(mutants)]
-        if crate::mutants::is_active("reactions-without-loads") {
-            return self.force[dof];
-        }
         self.force[dof] - self.external[dof]
     }
 

@@ -1,4 +1,4 @@
-//! The interface between the stepper and the deformable part: the program's own bodies, constant matrices, or another code.
+//! The interface between the stepper and the deformable part: the program's own bodies, or another code.
 //!
 //! A major iteration freezes geometry and stiffness. From then on it needs the interface response (eqn 6): the dependence of the
 //! forces on the motions, the gap and frame of every contact, and prescribed motions. When its minor iterations have converged,

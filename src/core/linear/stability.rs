@@ -195,12 +195,6 @@ fn subtract(row: &mut [f64], other: &[f64], factor: f64) {
 pub(super) fn smooth(dense: &Dense, basis: &DMatrix<f64>) -> Option<Stability> {
     let reduced = basis.transpose() * &dense.condensed * basis;
     let negative = dense.negative + negative_eigenvalues(&reduced)?;
-    #[cfg(mutants)]
-    let negative = crate::mutants::pick(
-        "stability-of-the-interface-alone",
-        negative,
-        negative - dense.negative,
-    );
     Some(match negative.checked_sub(dense.lengths)? {
         0 => Stability::Stable,
         modes => Stability::Unstable { modes },
@@ -218,9 +212,6 @@ pub(super) fn sliding(
     let force = DMatrix::from_fn(m, c, |i, j| conditions.force[i][j]);
     let across = &force * motion.transpose();
     let orientation = sign_of_determinant(&across)?;
-    #[cfg(mutants)]
-    let orientation =
-        crate::mutants::pick("divergence-with-the-other-sign", orientation, -orientation);
     let share = across.lu().solve(&(&force * basis))?;
     let test = basis - motion.transpose() * share;
     let reduced = test.transpose() * &dense.condensed * basis;

@@ -77,8 +77,6 @@ impl Stepper {
             }
             jumped = true;
         }
-        #[cfg(mutants)]
-        let jumped = jumped && !crate::mutants::is_active("arc-jump-unmarked");
         let landing = AcceptanceNotes {
             jumped,
             ..AcceptanceNotes::marked(marked)
@@ -136,11 +134,6 @@ impl Iterate {
             ArcMeasure::Displacements => (largest, 1.0),
             ArcMeasure::Dof(dof) => (motion[dof].abs(), motion[dof].signum()),
             ArcMeasure::Slip(contact) => (slips[contact].abs(), slips[contact].signum()),
-        };
-        #[cfg(mutants)]
-        let sign = match way.measured {
-            ArcMeasure::Slip(_) if crate::mutants::is_active("arc-slip-sign-lost") => 1.0,
-            _ => sign,
         };
         if !(largest.is_finite() && largest > 0.0 && size > NOTHING * largest) {
             return Err(Failure::ZeroMeasure);
@@ -231,12 +224,6 @@ impl Iterate {
             ArcMeasure::Dof(dof) => (u[dof] - start[dof]).abs(),
             ArcMeasure::Slip(contact) => state.nodes[contact].slip.abs(),
         };
-        #[cfg(mutants)]
-        if crate::mutants::is_active("arc-slip-length-signed")
-            && let ArcMeasure::Slip(contact) = way.measured
-        {
-            way.length += state.nodes[contact].slip - state.nodes[contact].slip.abs();
-        }
         let bounded = |aim: ArcConstraint| {
             model.arc.bounds.iter().any(
                 |bound| matches!(aim, ArcConstraint::Dof { dof, to } if (dof, to) == (bound.dof, bound.at)),
@@ -283,10 +270,6 @@ impl State {
     fn doubles_back(&self) -> bool {
         let state = self;
         let Some(way) = &state.way else { return false };
-        #[cfg(mutants)]
-        if crate::mutants::is_active("arc-step-doubles-back") {
-            return false;
-        }
         let behind = way.measured == ArcMeasure::Displacements
             && way.gone(&state.u, &state.start.u) <= -ROUNDING * way.step;
         if behind || self.turned_back() || way.turned || way.last.is_empty() {

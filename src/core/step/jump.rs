@@ -208,10 +208,6 @@ impl Iterate {
             state.record.pace.take(model, trip.motion, trip.span);
         }
         landing.jumped |= landing.unstable.is_some();
-        #[cfg(mutants)]
-        if crate::mutants::is_active("jump-unmarked") {
-            landing.jumped = false;
-        }
         self.accept(after, verdict, landing)
     }
 }

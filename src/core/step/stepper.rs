@@ -214,8 +214,6 @@ impl Stepper {
     pub fn restore(&mut self, state: &State) {
         let stands = self.stands_for(state);
         self.now.state.clone_from(state);
-        #[cfg(mutants)]
-        let stands = crate::mutants::pick("restore-keeps-the-factors", stands, true);
         let kept = self.now.source.restore(&self.now.state.at());
         self.now.forget_workspace();
         (self.now.linearised, self.now.measured) = (stands && kept, stands && kept);

@@ -1,11 +1,11 @@
-//! Tests of the stepper with sources other than scenes: constant interfaces, and a slave node with two contacts.
+//! Tests of the stepper with bodies given by a matrix: contacts on a floor, and a slave node with two contacts.
 
 use super::drive::{RunEnd, Until};
 use super::stepper::Stepper;
 use crate::interface::census::census;
-use crate::linear::constant::Constant;
 use crate::model::{
-    Body, BodyKind, Contact, Dofs, Form, Linear, LinearSolver, Load, Node, Surface,
+    Body, BodyKind, Component, Contact, Dofs, Form, Linear, LinearSolver, Load, Node, Surface,
+    Touch,
 };
 use crate::{Friction, JudgedLaw, Mode, Model, Settings, Strategy};
 use std::convert::Infallible;
@@ -23,18 +23,52 @@ fn rough(angle: f64) -> Friction {
     }
 }
 
-/// One contact: K = diag(k_n, k_t), with a normal load of 3 and a tangential load of `drag`.
+/// Slave nodes above a floor, with a symmetric stiffness and loads in the components (n, t) = (y, −x) of each.
+fn on_floor(
+    stiffness: &[f64],
+    load: &[f64],
+    nodes: &[(f64, Friction)],
+    (increment, settings): (f64, Settings),
+) -> Stepper {
+    let mut model = Model::builder("A constant interface");
+    let floor = [9.0, -9.0].map(|x| model.node("floor", [x, 0.0]));
+    model.surface(Surface::endless("floor", floor));
+    let size = load.len();
+    let sign = |dof: usize| if dof.is_multiple_of(2) { -1.0 } else { 1.0 };
+    let entry = |i: usize, j: usize| sign(i) * sign(j) * stiffness[(i ^ 1) * size + (j ^ 1)];
+    let entries = (0..size * size).map(|k| (k / size, k % size, entry(k / size, k % size)));
+    let springs = Linear {
+        form: Form::Stiffness,
+        entries: entries.collect(),
+        bars: Vec::new(),
+    };
+    let own: Vec<usize> = (0..)
+        .zip(nodes)
+        .map(|(x, (gap, _))| model.node("slave", [f64::from(x), *gap]))
+        .collect();
+    for ((&node, (_, friction)), load) in own.iter().zip(nodes).zip(load.chunks_exact(2)) {
+        model.contact(Contact::new(node, vec![0], *friction));
+        model
+            .load(node, Component::X, -load[1])
+            .load(node, Component::Y, load[0]);
+    }
+    model.body("springs", own, BodyKind::Linear(springs));
+    let touch = Touch::Start;
+    model
+        .history(vec![0.0, 1.0], increment)
+        .settings(Settings { touch, ..settings });
+    Stepper::new(Arc::new(model.build().unwrap()))
+}
+
+/// One contact with a normal load of 3 and a tangential load of `drag`.
 fn one(drag: f64) -> Stepper {
-    let interface = Constant::try_new(
-        vec![10.0, 0.0, 0.0, 5.0],
-        vec![-3.0, drag],
-        vec![0.1],
-        vec![rough(20.0)],
-        1.0,
-    );
-    let interface = interface.unwrap();
-    let model = Arc::new(interface.model(vec![0.0, 1.0], 0.25, Settings::default()));
-    Stepper::with_source(model, Box::new(interface.source()))
+    let (stiffness, load) = ([10.0, 0.0, 0.0, 5.0], [-3.0, drag]);
+    on_floor(
+        &stiffness,
+        &load,
+        &[(0.1, rough(20.0))],
+        (0.25, Settings::default()),
+    )
 }
 
 #[test]
@@ -44,9 +78,10 @@ fn a_constant_interface_of_one_contact_is_the_closed_form() {
     let mut slides = one(2.0);
     assert_eq!(to_the_end(&mut slides), RunEnd::Finished);
     let (contact, w) = (&slides.state().nodes[0], &slides.state().u);
-    assert!((contact.f_n - 2.0).abs() < 1e-10 && (w[0] + 0.1).abs() < 1e-12);
+    let own = w.len() - 2;
+    assert!((contact.f_n - 2.0).abs() < 1e-10 && (w[own + 1] + 0.1).abs() < 1e-12);
     assert!((contact.f_t + mu * 2.0).abs() < 1e-10, "{contact:?}");
-    assert!((w[1] - (2.0 - 2.0 * mu) / 5.0).abs() < 1e-10);
+    assert!((w[own] + (2.0 - 2.0 * mu) / 5.0).abs() < 1e-10);
     // Half the increment's drag before it touches gives its slip; without slip it sticks where it touched.
     let mut sticks = one(0.0);
     assert_eq!(to_the_end(&mut sticks), RunEnd::Finished);
@@ -67,7 +102,7 @@ fn random(seed: u64) -> impl FnMut() -> f64 {
 }
 
 /// Three contacts on a body that couples them, with random loads.
-fn coupled(seed: u64) -> Constant {
+fn coupled(seed: u64, history: (f64, Settings)) -> Stepper {
     let mut next = random(seed);
     let (contacts, size) = (3, 6);
     let factor: Vec<f64> = (0..size * size).map(|_| next()).collect();
@@ -79,19 +114,18 @@ fn coupled(seed: u64) -> Constant {
         }
         stiffness[i * size + i] += 1.0;
     }
-    let load = (0..size).map(|_| next()).collect();
-    let gaps = (0..contacts).map(|_| 0.1 * next().abs()).collect();
-    let friction = (0..contacts).map(|k| rough(10.0 * k as f64)).collect();
-    Constant::try_new(stiffness, load, gaps, friction, 1.0).unwrap()
+    let load: Vec<f64> = (0..size).map(|_| next()).collect();
+    let nodes: Vec<_> = (0..contacts)
+        .map(|k| (0.1 * next().abs(), rough(10.0 * k as f64)))
+        .collect();
+    on_floor(&stiffness, &load, &nodes, history)
 }
 
 #[test]
 fn what_constant_interfaces_end_in_is_a_state_that_the_census_finds() {
     let mut found = 0;
     for seed in 0..200 {
-        let interface = coupled(seed);
-        let model = Arc::new(interface.model(vec![0.0, 1.0], 1.0, Settings::default()));
-        let mut stepper = Stepper::with_source(model, Box::new(interface.source()));
+        let mut stepper = coupled(seed, (1.0, Settings::default()));
         let problem = stepper.interface_problem().unwrap();
         let census = census(&problem).unwrap();
         if to_the_end(&mut stepper) != RunEnd::Finished {
@@ -200,13 +234,11 @@ fn of_two_contacts_at_a_node_one_can_be_closed_and_the_other_open() {
 #[test]
 fn every_strategy_steps_a_constant_interface() {
     for strategy in Strategy::ALL {
-        let interface = coupled(7);
         let settings = Settings {
             strategy,
             ..Settings::default()
         };
-        let model = Arc::new(interface.model(vec![0.0, 1.0], 0.5, settings));
-        let mut stepper = Stepper::with_source(model, Box::new(interface.source()));
+        let mut stepper = coupled(7, (0.5, settings));
         assert_eq!(to_the_end(&mut stepper), RunEnd::Finished, "{strategy:?}");
     }
 }

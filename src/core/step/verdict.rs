@@ -26,9 +26,6 @@ impl Stepper {
             return self.refuse_inverted(point);
         }
         let verdict = self.now.source.judge(&self.now.state.at(), &after);
-        #[cfg(mutants)]
-        let verdict =
-            crate::mutants::pick("accepted-without-the-judge", verdict, Verdict::default());
         if self.now.state.recovery.motion.is_some() {
             let worst = worst_of(&verdict);
             return match worst.filter(|found| is_slip(found.law) && !self.now.state.attempt.net) {
@@ -74,10 +71,6 @@ impl Stepper {
 impl Iterate {
     /// Worst point of an inverted element of the current state. `None` if no element is inverted.
     pub(super) fn inverted(&self) -> Option<PointDeformation> {
-        #[cfg(mutants)]
-        if crate::mutants::is_active("inverted-element-accepted") {
-            return None;
-        }
         self.source.deformation(&self.state.u)?.inverted()
     }
 

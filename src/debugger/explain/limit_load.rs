@@ -17,6 +17,7 @@
 
 use super::load_limit_probe::{LoadLimitProbe, reach};
 use super::moves_away::moves_away;
+use super::restart::restart;
 use super::rigid_motion::BodyMotion;
 use super::surface_end::passed_end;
 use super::{names, strain};
@@ -195,22 +196,11 @@ fn with_ladder(
     };
     stepper.restore(&state.attempt_again());
     stepper.intervene(&Intervention::Settings(settings)).ok()?;
-    let (wanted, leg) = (state.load_factor, state.start.leg);
-    let mut minors = 0_u64;
-    let until = Until::end().minors(MOST_OF_LADDER).interrupted_by(stop);
-    let end = stepper.drive(until, |stepper| {
-        minors += 1;
-        let start = &stepper.state().start;
-        let reached = start.load_factor == wanted || start.leg > leg;
-        match stepper.event().outcome {
-            Outcome::Increment { .. } if reached => ControlFlow::Break(()),
-            _ => ControlFlow::Continue(()),
-        }
-    });
-    match end {
-        RunEnd::Failed(failure) => Some(Err((stepper.state().clone(), failure))),
-        RunEnd::Stopped(()) | RunEnd::Finished => Some(Ok(minors)),
-        RunEnd::Spent | RunEnd::Interrupted => None,
+    let run = restart(stepper, state, MOST_OF_LADDER, stop)?;
+    match run.failure {
+        None => Some(Ok(run.minors)),
+        Some(Some(failure)) => Some(Err((stepper.state().clone(), failure))),
+        Some(None) => None,
     }
 }
 

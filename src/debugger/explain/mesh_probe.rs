@@ -1,7 +1,7 @@
 //! Tries a finer mesh: the scene with every generated element divided in two, from its start to the load of the
 //! failure.
 
-use super::restart::{Restart, changed, restart};
+use super::restart::{BUDGET, Restart, changed, restart};
 use stickslip_core::State;
 use stickslip_scene::Spec;
 
@@ -24,6 +24,6 @@ pub fn finer(spec: &Spec, state: &State, stop: &dyn Fn() -> bool) -> Option<Mesh
     if stepper.model().dofs.len() <= state.u.len() {
         return None;
     }
-    let run = restart(&mut stepper, state, stop)?;
+    let run = restart(&mut stepper, state, BUDGET, stop)?;
     Some(MeshProbe { refine, run })
 }

@@ -198,7 +198,7 @@ fn attempt_restart(
     }
     let mut stepper = restart::changed(spec, state)?;
     let began = Instant::now();
-    let run = restart::restart(&mut stepper, state, stop)?;
+    let run = restart::restart(&mut stepper, state, restart::BUDGET, stop)?;
     let count = |n: u64| u32::try_from(n).unwrap_or(u32::MAX);
     let mut trial = RemedyTrial::new(remedy);
     trial.seconds = began.elapsed().as_secs_f64();
@@ -294,10 +294,6 @@ pub fn attempt(
 /// Whether an increment was accepted at or beyond the failed load.
 fn is_there(state: &State, event: &Event, (leg, load): (usize, f64)) -> bool {
     let accepted = matches!(event.outcome, Outcome::Increment { .. });
-    #[cfg(mutants)]
-    if stickslip_core::mutants::is_active("remedy-ends-at-its-first-increment") {
-        return accepted;
-    }
     let close = (event.load_factor - load).abs() <= 1e-9 * state.controls.increment;
     accepted && (state.status == Status::Finished || state.start.leg > leg || close)
 }

@@ -8,8 +8,8 @@ use stickslip_core::{
 };
 use stickslip_scene::{Scene, Spec};
 
-/// Maximum number of minor iterations in the trial.
-const BUDGET: u64 = 4000;
+/// Maximum number of minor iterations in the trial of a changed scene.
+pub(super) const BUDGET: u64 = 4000;
 
 /// Result of the trial.
 #[derive(Debug, Clone, PartialEq)]
@@ -56,11 +56,16 @@ pub fn changed(spec: Spec, state: &State) -> Option<Stepper> {
     Some(stepper)
 }
 
-/// Runs a changed scene to the load at which a state failed. `None` if interrupted.
-pub fn restart(stepper: &mut Stepper, state: &State, stop: &dyn Fn() -> bool) -> Option<Restart> {
+/// Runs a stepper to the load at which a state failed, in at most `budget` minor iterations. `None` if interrupted.
+pub fn restart(
+    stepper: &mut Stepper,
+    state: &State,
+    budget: u64,
+    stop: &dyn Fn() -> bool,
+) -> Option<Restart> {
     let target = (state.start.leg, state.load_factor);
     let (mut minors, mut majors) = (0, 0);
-    let until = Until::end().minors(BUDGET).interrupted_by(stop);
+    let until = Until::end().minors(budget).interrupted_by(stop);
     let end = stepper.drive(until, |stepper| {
         minors += 1;
         let outcome = &stepper.event().outcome;

@@ -1,6 +1,6 @@
 //! The quantities that Table 2 tests: their names and dimensions, and how a change of another node affects them.
 
-use super::influence::Influence;
+use super::influence::{Influence, NodePush};
 use stickslip_core::{Decision, TestedQuantity};
 
 /// Dimension of a tested quantity.
@@ -69,6 +69,16 @@ pub fn deciding(decision: &Decision) -> TestedQuantity {
     fired
         .or(tests().next())
         .map_or(TestedQuantity::Gap, |test| test.tested)
+}
+
+/// The changes that moved a tested quantity, with their effect, largest first.
+pub fn effects(tested: TestedQuantity, pushes: &[NodePush]) -> Vec<(&NodePush, f64)> {
+    let all = pushes
+        .iter()
+        .map(|push| (push, effect(tested, &push.influence).1));
+    let mut found: Vec<_> = all.filter(|(_, effect)| *effect != 0.0).collect();
+    found.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
+    found
 }
 
 /// The effect on a tested quantity, or on the force that decides it, with its symbol.

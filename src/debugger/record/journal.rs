@@ -282,8 +282,6 @@ impl Journal {
     }
 
     fn write(&mut self, line: &impl Serialize, sync: bool) -> Result<(), JournalError> {
-        #[cfg(mutants)]
-        let sync = stickslip_core::mutants::pick("journal-not-synced", sync, false);
         let failed = |source| failure(&self.path, "written", source);
         let text = notation::line(line).map_err(|e| failed(io::Error::other(e)))? + "\n";
         let written = self
@@ -484,7 +482,7 @@ const SECOND: &str = "2-";
 
 /// Digest of a state's bits.
 pub fn digest(state: &State) -> String {
-    match bits::digest(&digested(state)) {
+    match bits::digest(&state.digested()) {
         Some(digest) => format!("{SECOND}{digest:016x}"),
         None => NONE.into(),
     }
@@ -496,7 +494,7 @@ pub fn digest_like(recorded: &str, state: &State) -> String {
         return digest(state);
     }
     let mut text = Digest::default();
-    match notation::line_to(&mut text, &digested(state)) {
+    match notation::line_to(&mut text, &state.digested()) {
         Ok(()) => text.to_string(),
         Err(error) => format!("{NONE}: {error}"),
     }
@@ -504,20 +502,6 @@ pub fn digest_like(recorded: &str, state: &State) -> String {
 
 /// A digest that never matches. All known states have one.
 const NONE: &str = "none";
-
-fn digested(state: &State) -> State {
-    let state = state.digested();
-    #[cfg(mutants)]
-    let state = if stickslip_core::mutants::is_active("digest-without-contacts") {
-        State {
-            nodes: Vec::new(),
-            ..state
-        }
-    } else {
-        state
-    };
-    state
-}
 
 /// Seconds since 1970; 0 if the clock is set earlier.
 pub(crate) fn now() -> u64 {

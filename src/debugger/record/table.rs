@@ -74,12 +74,6 @@ pub fn csv_row(
         at.increment, event.load_factor, at.major
     );
     for value in monitors {
-        #[cfg(mutants)]
-        let value = &stickslip_core::mutants::pick(
-            "csv-in-single-precision",
-            *value,
-            f64::from(*value as f32),
-        );
         // Writing to a string does not fail.
         let _ = write!(line, ",{value:?}");
     }

@@ -282,14 +282,6 @@ impl WireFrame<'_> {
         let forced = forced(from, k, found);
         let known = |x: Option<f64>| x.unwrap_or(f64::NAN);
         let t_max = known(found.limit);
-        #[cfg(mutants)]
-        let known = |x: Option<f64>| {
-            x.unwrap_or(stickslip_core::mutants::pick(
-                "unknown-number-as-zero",
-                f64::NAN,
-                0.0,
-            ))
-        };
         let record = ContactRecord {
             decision: self.decision(found, friction, spring, ties, (named, forced)),
             forced,

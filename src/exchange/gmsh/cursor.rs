@@ -1,6 +1,7 @@
 //! A cursor in a file whose numbers are text or binary, as its header states.
 
 use crate::FormatError;
+use crate::words::place;
 
 /// Number format of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -41,17 +42,9 @@ impl<'a> Cursor<'a> {
         if self.form != CursorForm::Text {
             return FormatError::whole(format!("byte {byte}: {message}"));
         }
-        let before = &self.bytes[..byte.min(self.bytes.len())];
-        let line = before
-            .iter()
-            .rposition(|&b| b == b'\n')
-            .map_or(0, |k| k + 1);
-        let column = 1 + String::from_utf8_lossy(&before[line..]).chars().count();
-        FormatError::at(
-            1 + before.iter().filter(|&&b| b == b'\n').count(),
-            column,
-            message,
-        )
+        let before = String::from_utf8_lossy(&self.bytes[..byte.min(self.bytes.len())]);
+        let (line, column) = place(&before, before.len());
+        FormatError::at(line, column, message)
     }
 
     /// An error in the last item read.

@@ -24,12 +24,12 @@ mod tests;
 use crate::bail;
 use cards::Card;
 pub use deck::Deck;
-use deck::{Remark, Value};
+use deck::{Faces, Remark, Value};
 use keywords::{Pass, Reading, Treatment, nearest, treatment};
 use reader::Reader;
 pub use source::{DECK_BYTES, DeckError, DeckLocation, Fault, Include};
 use source::{Done, Sources};
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 
 /// Whether a text could be a deck: its first line that is neither blank nor a comment begins with a star.
 pub fn is_one(text: &str) -> bool {
@@ -226,6 +226,18 @@ impl Deck {
         let on_it = edges.filter(|(_, edge)| edge.iter().all(|end| of.contains(end)));
         let middles = on_it.filter_map(|(k, _)| element.nodes.get(cell.corners() + k).copied());
         (corners, middles.collect())
+    }
+
+    /// The nodes of a surface, midside nodes included.
+    pub fn surface_nodes(&self, surface: usize) -> BTreeSet<usize> {
+        match &self.surfaces[surface].of {
+            Faces::Nodes(nodes) => nodes.iter().copied().collect(),
+            Faces::Elements(sides) => {
+                let of = sides.iter().map(|&(e, side)| self.face(e, side));
+                of.flat_map(|(corners, middles)| [corners, middles].concat())
+                    .collect()
+            }
+        }
     }
 
     /// Whether the deck has three-dimensional elements.

@@ -141,19 +141,9 @@ impl DeckObjects<'_> {
             })
     }
 
-    /// Nodes of a surface, ascending.
-    fn nodes_of(&self, surface: usize) -> BTreeSet<usize> {
-        match &self.deck.surfaces[surface].of {
-            Faces::Nodes(nodes) => nodes.iter().copied().collect(),
-            Faces::Elements(sides) => sides
-                .iter()
-                .flat_map(|&(e, side)| self.deck.side(e, side))
-                .collect(),
-        }
-    }
-
     fn slaves_of(&self, surface: usize) -> Vec<usize> {
-        self.nodes_of(surface)
+        self.deck
+            .surface_nodes(surface)
             .into_iter()
             .filter(|node| self.used[*node])
             .collect()
@@ -323,7 +313,8 @@ impl DeckObjects<'_> {
         let mut groups: Vec<(Vec<usize>, Vec<usize>)> = Vec::new();
         for (k, touching) in all.iter().enumerate() {
             let rigid = self
-                .nodes_of(touching.master)
+                .deck
+                .surface_nodes(touching.master)
                 .iter()
                 .all(|&n| self.still[n] == [true; 2]);
             // A fixed node over a fixed surface has no unknown force.

@@ -185,15 +185,6 @@ impl DeckObjects<'_> {
         let direction = component(target.1);
         let given = |k: usize| course.is_some_and(|course| !course.given[k].values.is_empty());
         for (k, step) in self.deck.steps.iter().enumerate() {
-            #[cfg(mutants)]
-            let step = &if stickslip_core::mutants::is_active("op-new-ignored") {
-                Step {
-                    new_motions: false,
-                    ..step.clone()
-                }
-            } else {
-                step.clone()
-            };
             if step.new_motions && !given(k) && (k > 0 || from_model) {
                 bail!(
                     step.place,

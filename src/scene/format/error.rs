@@ -3,6 +3,7 @@
 use crate::shown;
 use crate::shown::first_of;
 use std::fmt;
+pub use stickslip_exchange::words::quoted;
 pub(crate) use stickslip_platform::similar::nearest;
 pub use stickslip_platform::similar::{did_you_mean, did_you_mean_file};
 
@@ -214,14 +215,6 @@ const LONGEST_MESSAGE: usize = 1500;
 const LONGEST_NAME: usize = 300;
 /// Maximum number of characters quoted from external text.
 const MOST: usize = 60;
-
-/// External text for a message: quoted and shortened.
-pub fn quoted(text: &str) -> String {
-    match text.char_indices().nth(MOST) {
-        Some((end, _)) => format!("{:?}…", &text[..end]),
-        None => format!("{text:?}"),
-    }
-}
 
 /// External text on one line, shortened.
 pub fn shortened(text: &str) -> String {

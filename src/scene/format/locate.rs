@@ -7,6 +7,7 @@
 
 use super::error::{Path, Step};
 use std::ops::Range;
+pub use stickslip_exchange::words::place as line_and_column;
 
 /// Byte range of the value at a path, or of the innermost enclosing value that the text contains.
 pub fn locate(text: &str, path: &Path) -> Range<usize> {
@@ -88,18 +89,6 @@ pub fn too_deep(text: &str) -> Option<usize> {
         scan.skip_blanks();
     }
     None
-}
-
-/// Line and column of a byte, both from 1; columns count characters.
-pub fn line_and_column(text: &str, byte: usize) -> (usize, usize) {
-    let mut byte = byte.min(text.len());
-    while !text.is_char_boundary(byte) {
-        byte -= 1;
-    }
-    let before = &text[..byte];
-    let line = 1 + before.matches('\n').count();
-    let start = before.rfind('\n').map_or(0, |k| k + 1);
-    (line, 1 + before[start..].chars().count())
 }
 
 /// A cursor in the text.

@@ -72,7 +72,7 @@ fn unreadable(file: &str, text: &str, what: &str, error: &SpannedError) -> Scene
 }
 
 /// The path to the text that ron cannot read.
-pub fn path_of(text: &str, error: &SpannedError) -> Path {
+fn path_of(text: &str, error: &SpannedError) -> Path {
     use ron::Error as E;
     // A missing field is detected at the end of its struct.
     let place = match error.code {
@@ -182,7 +182,11 @@ fn message(error: &ron::Error, what: &str) -> String {
         }
         E::DuplicateStructField { field, .. } => format!("the field {field:?} is given twice"),
         E::ExpectedStructLike | E::ExpectedNamedStructLike(_) => {
-            let second = if what == "scene" { "nodes" } else { "steps" };
+            let second = match what {
+                "scene" => "nodes",
+                "study" => "vary",
+                _ => "steps",
+            };
             format!(
                 "a {what} is a list of fields in round brackets, (title: \"...\", {second}: [...], ...)"
             )
@@ -196,6 +200,7 @@ fn message(error: &ron::Error, what: &str) -> String {
             )
         }
         E::ExceededRecursionLimit => format!("brackets are nested too deeply for a {what}"),
+        E::ExpectedComma => "expected comma or closing bracket".to_owned(),
         E::Eof => "the file ends too early; a bracket or a quote is not closed".to_owned(),
         E::TrailingCharacters => {
             format!("unexpected text after the closing bracket of the {what}")

@@ -46,10 +46,6 @@ pub(super) fn sound(
     if area(nodes, &own[..count]) < 0.0 {
         // Reversed from its first corner, so that the midside node of its last side comes first.
         own[1..count].reverse();
-        #[cfg(mutants)]
-        if stickslip_core::mutants::is_active("middle-nodes-not-turned") {
-            return Ok((kind, own));
-        }
         own[count..count * (kind.per_face() - 1)].reverse();
     }
     if folds.is_folded(own.iter().map(|&n| nodes[n].at)) {

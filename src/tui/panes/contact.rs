@@ -17,7 +17,6 @@ use ratatui::text::Line;
 use std::f64::consts::TAU;
 use stickslip_core::ContactRecord;
 use stickslip_core::contact::projection::tangent;
-use stickslip_debugger::NodePush;
 use stickslip_debugger::explain::tested;
 use stickslip_debugger::explain::trail::{self, Cone, TrailPoint};
 use stickslip_scene::number::{UNREPORTED, sig2, sig4};
@@ -410,16 +409,14 @@ fn pushes(
     let Some(Some(found)) = view.pushes(slave) else {
         return none(buffer, "not known here");
     };
-    let of = |push: &NodePush| tested::effect(quantity, &push.influence).1;
-    let mut found: Vec<_> = found.iter().filter(|push| of(push) != 0.0).collect();
-    found.sort_by(|a, b| of(b).abs().total_cmp(&of(a).abs()));
+    let mut found = tested::effects(quantity, found);
     found.truncate(PUSHERS.min(usize::from(area.height)));
-    let Some(largest) = found.first().map(|push| of(push).abs()) else {
+    let Some(largest) = found.first().map(|(_, effect)| effect.abs()) else {
         return none(buffer, "no change at any node moved it");
     };
     let name = found
         .iter()
-        .map(|push| view.slave(push.slave).width())
+        .map(|(push, _)| view.slave(push.slave).width())
         .max()
         .unwrap_or(0)
         .min(12);
@@ -427,15 +424,15 @@ fn pushes(
     let target = view.slave(slave);
     let room = usize::from(area.width).saturating_sub(name + number + 6);
     let middle = found.len() / 2;
-    let lines = found.iter().enumerate().map(|(row, push)| {
-        let part = of(push).abs() / largest;
+    let lines = found.iter().enumerate().map(|(row, (push, effect))| {
+        let part = effect.abs() / largest;
         let from = paint::cut(view.slave(push.slave), name);
         let stroke = match part {
             0.5.. => "━",
             0.1.. => "─",
             _ => "╌",
         };
-        let sign = if of(push) > 0.0 { "+" } else { "" };
+        let sign = if *effect > 0.0 { "+" } else { "" };
         let end = match row == middle {
             true => format!("▶ {}", paint::cut(target, room)),
             false if row < middle => "╮".into(),
@@ -443,7 +440,7 @@ fn pushes(
         };
         let text = format!(
             " {from:>name$} {stroke}{:─^number$}{stroke}{end}",
-            format!("{sign}{}", sig4(of(push)))
+            format!("{sign}{}", sig4(*effect))
         );
         let style = if part >= 0.5 {
             theme.strong

@@ -188,14 +188,12 @@ fn pushes(
         })];
     };
     let quantity = tested::deciding(&record.decision);
-    let of = |push: &NodePush| tested::effect(quantity, &push.influence).1;
     let (symbol, _) = tested::effect(quantity, &Influence::default());
-    let mut found: Vec<&NodePush> = found.iter().filter(|push| of(push) != 0.0).collect();
-    found.sort_by(|a, b| of(b).abs().total_cmp(&of(a).abs()));
-    let together: f64 = found.iter().map(|push| of(push)).sum();
+    let found = tested::effects(quantity, found);
+    let together: f64 = found.iter().map(|(_, effect)| effect).sum();
     let mut lines = vec![heading("Who pushed it since the previous minor iteration")];
-    for push in found.iter().take(MOST) {
-        let text = format!(" {}: {symbol} = {}", deed(push, view), signed(of(push)));
+    for (push, effect) in found.iter().take(MOST) {
+        let text = format!(" {}: {symbol} = {}", deed(push, view), signed(*effect));
         lines.push(Line::styled(text, theme.text));
     }
     if found.len() > MOST {

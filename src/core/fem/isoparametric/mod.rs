@@ -260,8 +260,6 @@ impl<const N: usize, const P: usize, const HOOP: bool> ContinuumElement<N, P, HO
         };
         ring.hoop = hoop;
         let volume = area * 2.0 * PI * ring.radius;
-        #[cfg(mutants)]
-        let volume = crate::mutants::pick("ring-without-its-radius", volume, area * 2.0 * PI);
         (area > 0.0 && volume > 0.0).then_some(Point {
             grad,
             h,
@@ -411,10 +409,6 @@ impl<const N: usize, const P: usize, const HOOP: bool> element::Element
                 continue;
             };
             new[..3].copy_from_slice(point.cauchy().as_slice());
-            #[cfg(mutants)]
-            if crate::mutants::is_active("updated-stress-not-turned") {
-                new[..3].copy_from_slice(point.response.stress.as_slice());
-            }
             new[3] = if HOOP {
                 self.across(&point)
             } else {

@@ -414,8 +414,6 @@ fn end_of_mode(
         all.into_iter().flatten().min_by(|a, b| a.0.total_cmp(&b.0))
     };
     let opens = || falls(node.f_n, rates.f_n).map(|s| (s, Mode::Free, 0.0));
-    #[cfg(mutants)]
-    let opens = || opens().filter(|_| !crate::mutants::is_active("path-without-opening"));
     match node.mode {
         Mode::Free => {
             let to = if friction.is_smooth() {

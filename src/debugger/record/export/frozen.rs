@@ -448,10 +448,10 @@ fn stiffness(problem: &InterfaceProblem) -> Option<Parts> {
     let (k, start, n) = (relation.stiffness, &relation.start, relation.start.len());
     let mut matrix: Vec<f64> = relation.response.iter().map(|r| r / k).collect();
     (0..n).for_each(|i| matrix[i * n + i] += 1.0);
-    let solved = solved(
-        &matrix,
-        start.iter().chain(&relation.response).copied().collect(),
-    )?;
+    let mut dense = DenseFactors::new(n, n + 1).ok()?;
+    dense.factor(&matrix);
+    let mut solved = [start.as_slice(), &relation.response].concat();
+    dense.solve(&mut solved).ok()?;
     let (c, k_columns) = solved.split_at(n);
     // (1 + R/k)⁻¹ = 1 + K/k; without springs nothing has to be removed.
     let largest = max_abs(k_columns) / k;
@@ -483,19 +483,12 @@ fn stiffness(problem: &InterfaceProblem) -> Option<Parts> {
 
 /// W and free displacements, without loads; `None` if something can move freely.
 fn compliance(problem: &InterfaceProblem) -> Option<Parts> {
-    let relation = &problem.relation;
-    let (k, start, n) = (relation.stiffness, &relation.start, relation.start.len());
-    let mut right = start.clone();
-    right.extend((0..n * n).map(|at| if at / n == at % n { 1.0 } else { 0.0 }));
-    let solved = solved(&relation.response, right)?;
-    let (still, inverse) = solved.split_at(n);
-    let largest = max_abs(inverse) * problem.spring;
-    if largest > SINGULAR {
+    let bodies = problem.relation.compliance()?;
+    if max_abs(&bodies.w) * problem.spring > SINGULAR {
         return None;
     }
-    let w = rows(n, |i, j| {
-        -inverse[j * n + i] - if i == j { 1.0 / k } else { 0.0 }
-    });
+    let n = problem.relation.count();
+    let w = rows(n, |i, j| bodies.w[j * n + i]);
     let acting: Vec<f64> = problem
         .nodes
         .iter()
@@ -504,7 +497,7 @@ fn compliance(problem: &InterfaceProblem) -> Option<Parts> {
     let prescribed = problem.nodes.iter().flat_map(|node| node.prescribed);
     let free = w
         .iter()
-        .zip(still)
+        .zip(bodies.still)
         .zip(prescribed)
         .map(|((row, still), p)| {
             let answer: f64 = row.iter().zip(&acting).map(|(w, f)| w * f).sum();
@@ -516,15 +509,6 @@ fn compliance(problem: &InterfaceProblem) -> Option<Parts> {
         free,
         vec![[0.0; 2]; problem.nodes.len()],
     ))
-}
-
-/// Solves A X = B, all stored by column.
-fn solved(a: &[f64], mut b: Vec<f64>) -> Option<Vec<f64>> {
-    let n = a.len().isqrt();
-    let mut dense = DenseFactors::new(n, b.len() / n).ok()?;
-    dense.factor(a);
-    dense.solve(&mut b).ok()?;
-    Some(b)
 }
 
 fn rows(n: usize, entry: impl Fn(usize, usize) -> f64) -> Vec<Vec<f64>> {

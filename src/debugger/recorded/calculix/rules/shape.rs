@@ -454,21 +454,9 @@ impl<'d> DeckShape<'d> {
         }
     }
 
-    /// The nodes of a surface, midside nodes included.
-    fn surface_nodes(&self, surface: usize) -> BTreeSet<usize> {
-        match &self.deck.surfaces[surface].of {
-            Faces::Nodes(nodes) => nodes.iter().copied().collect(),
-            Faces::Elements(sides) => {
-                let of = sides.iter().map(|&(e, side)| self.deck.face(e, side));
-                of.flat_map(|(corners, middles)| [corners, middles].concat())
-                    .collect()
-            }
-        }
-    }
-
     fn pair(&self, number: usize, surfaces: [usize; 2], closes: Option<f64>) -> PairShape {
         let [slaves, masters] = surfaces.map(|surface| self.faces(surface));
-        let nodes = self.surface_nodes(surfaces[0]);
+        let nodes = self.deck.surface_nodes(surfaces[0]);
         let group = |node: Option<&usize>| node.and_then(|n| self.group(*n)).unwrap_or(usize::MAX);
         let master = masters.first().map(|face| &face.corners[0]);
         let groups = [group(nodes.first()), group(master)];
