@@ -2,6 +2,7 @@
 
 use super::check::{SolveError, fill_probe, largest};
 use super::executor::{Executor, SequentialExecutor};
+use super::registers;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::lu::partial_pivoting::factor::{lu_in_place, lu_in_place_scratch};
 use faer::linalg::lu::partial_pivoting::solve::{
@@ -88,6 +89,7 @@ impl DenseFactors {
             MemStack::new(&mut self.memory[0]),
             Default::default(),
         );
+        registers::release();
     }
 
     /// Solves A X = B for the columns of B, which are consecutive in `b`; X replaces B. There must not be more columns than
@@ -130,6 +132,7 @@ impl DenseFactors {
             Par::Seq,
             MemStack::new(&mut self.memory[0]),
         );
+        registers::release();
         for column in b.chunks_exact_mut(n.max(1)) {
             for (b, scale) in column.iter_mut().zip(&self.row_scale) {
                 *b *= scale;
@@ -162,6 +165,7 @@ impl DenseFactors {
                 Par::Seq,
                 MemStack::new(memory),
             );
+            registers::release();
         };
         in_blocks(executor, x, n.max(1) * BLOCK, &mut self.memory, &solve);
     }
@@ -224,6 +228,7 @@ pub fn subtract_product(
         -1.0,
         Par::Seq,
     );
+    registers::release();
 }
 
 #[cfg(test)]

@@ -9,6 +9,7 @@
 //! recursive halving with faer's kernels. If a column has no pivot, plain loops repeat the elimination with column exchanges;
 //! columns without any pivot are delayed to the next front, with the same number of rows.
 
+use super::registers;
 use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_solve::solve_unit_lower_triangular_in_place;
 use faer::{Accum, MatMut, MatRef, Par};
@@ -257,4 +258,5 @@ fn update(left: &[f64], right: &mut [f64], size: usize, first: usize) {
     let (mut upper, lower) = right.split_at_row_mut(steps);
     solve_unit_lower_triangular_in_place(own, upper.as_mut(), Par::Seq);
     matmul(lower, Accum::Add, below, upper.as_ref(), -1.0, Par::Seq);
+    registers::release();
 }

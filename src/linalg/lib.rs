@@ -20,6 +20,7 @@ mod graph;
 mod lu;
 mod order;
 mod pattern;
+mod registers;
 mod subtrees;
 mod supernodes;
 mod symmetric;

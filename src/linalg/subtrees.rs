@@ -13,6 +13,7 @@
 use super::check::SolveError;
 use super::executor::Executor;
 use super::pattern::Pattern;
+use super::registers;
 use super::supernodes::{Supernode, Supernodes};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::ldlt::factor::{
@@ -305,6 +306,7 @@ impl Sum<'_> {
             let result = &mut room.result[..count * shared];
             let out_of = MatMut::from_column_major_slice_mut(result, count, shared);
             multiply(scaled, l, out_of, start == 0);
+            registers::release();
             let places = &mut room.places[..count];
             for (place, &row) in places.iter_mut().zip(&rows[start..]) {
                 *place = self.place[row];
@@ -395,7 +397,8 @@ fn eliminate(
 /// B L⁻ᵀ, in parts of rows.
 fn divide(l: MatRef<'_, f64>, below: MatMut<'_, f64>, parts: usize, executor: &dyn Executor) {
     if parts == 1 {
-        return solve_unit_lower_triangular_in_place(l, below.transpose_mut(), Par::Seq);
+        solve_unit_lower_triangular_in_place(l, below.transpose_mut(), Par::Seq);
+        return registers::release();
     }
     let middle = below.nrows() / 2;
     let (mut first, mut second) = below.split_at_row_mut(middle);

@@ -25,6 +25,7 @@ use super::check::{SolveError, largest};
 use super::executor::Executor;
 use super::order::order;
 use super::pattern::{Pattern, symbolic_view};
+use super::registers;
 use super::subtrees::{LowerHalf, Subtree, Workspace};
 use super::supernodes::Supernodes;
 use faer::linalg::matmul::triangular::{BlockStructure, matmul};
@@ -343,6 +344,7 @@ impl SymmetricFactors {
             1.0,
             Par::Seq,
         );
+        registers::release();
         for column in 0..c {
             for row in 0..column {
                 out[column * c + row] = out[row * c + column];

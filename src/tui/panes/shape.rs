@@ -19,6 +19,7 @@ use ratatui::layout::{Margin, Position, Rect};
 use ratatui::style::{Modifier, Style};
 use ratatui::text::{Line, Span};
 use ratatui::widgets::Widget;
+use std::collections::HashMap;
 use std::f64::consts::FRAC_PI_4;
 use stickslip_core::fem::lagrange;
 use stickslip_core::model::BodyKind;
@@ -108,14 +109,14 @@ pub fn picture(buffer: &mut Buffer, inner: Rect, app: &App, view: &View) -> Opti
     surfaces(&mut canvas, &window, app, view);
     let given = shown_conditions(view, &window);
     let (forces, longest) = forces(&window, view);
-    let arrows = || {
-        given
-            .arrows
-            .iter()
-            .map(|one| drawn(one, &forces, &window, app))
-    };
-    for (line, style, _) in arrows() {
-        canvas.dotted(line[0], line[1], style, SPARSE);
+    let mut tips: HashMap<[u64; 2], Vec<Dot>> = HashMap::new();
+    for [tail, tip] in &forces {
+        tips.entry(tail.map(f64::to_bits)).or_default().push(*tip);
+    }
+    let arrows = given.arrows.iter();
+    let arrows: Vec<_> = arrows.map(|one| drawn(one, &tips, &window, app)).collect();
+    for (line, style, _) in &arrows {
+        canvas.dotted(line[0], line[1], *style, SPARSE);
     }
     let style = app.theme.bad.remove_modifier(Modifier::REVERSED);
     forces
@@ -123,8 +124,8 @@ pub fn picture(buffer: &mut Buffer, inner: Rect, app: &App, view: &View) -> Opti
         .for_each(|[from, to]| canvas.line(*from, *to, style));
     let motions = motions(&mut canvas, &window, app, view);
     canvas.render(buffer);
-    for (line, style, glyphs) in arrows() {
-        head(buffer, &canvas, &line, (glyphs, style));
+    for (line, style, glyphs) in &arrows {
+        head(buffer, &canvas, line, (*glyphs, *style));
     }
     supports(buffer, &canvas, &window, given, app, view);
     forces
@@ -408,10 +409,10 @@ fn shown_conditions(view: &View, window: &Window) -> Conditions {
 }
 
 /// The line of a load, which ends at its node, or of a prescribed motion, which starts there; its style and its heads. It is drawn
-/// next to a contact force that covers it.
+/// next to a contact force that covers it; `tips` are those of the forces, by the bits of their other ends.
 fn drawn(
     arrow: &ConditionArrow,
-    forces: &[[Dot; 2]],
+    tips: &HashMap<[u64; 2], Vec<Dot>>,
     window: &Window,
     app: &App,
 ) -> ([Dot; 2], Style, [&'static str; 8]) {
@@ -424,9 +425,8 @@ fn drawn(
         Given::Motion => (arrow.at, part(1.0), DOUBLE_HEADS),
     };
     let (at, line) = (window.dot(arrow.at), [window.dot(from), window.dot(to)]);
-    let is_covered = forces
-        .iter()
-        .any(|[tail, tip]| *tail == at && arrow.is_under([tip[0] - tail[0], tail[1] - tip[1]]));
+    let mut tips = tips.get(&at.map(f64::to_bits)).into_iter().flatten();
+    let is_covered = tips.any(|tip| arrow.is_under([tip[0] - at[0], at[1] - tip[1]]));
     let line = if is_covered { beside(line) } else { line };
     (line, app.theme.good, heads)
 }
