@@ -234,6 +234,29 @@ pub fn subtract_product(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::executor::Threads;
+
+    #[test]
+    fn blocks_of_columns_are_solved_and_multiplied_with_the_same_bits_on_threads() {
+        let (n, columns) = (40, 2 * BLOCK + 17);
+        let entry = |k: usize| (1.618 * k as f64).sin();
+        let diagonal = |k: usize| if k.is_multiple_of(n + 1) { 9.0 } else { 0.0 };
+        let a: Vec<f64> = (0..n * n).map(|k| entry(k) + diagonal(k)).collect();
+        let b: Vec<f64> = (0..n * columns).map(|k| entry(k + 7)).collect();
+        let mut dense = DenseFactors::new(n, columns).unwrap();
+        dense.factor(&a);
+        let mut solve = |executor: &dyn Executor| {
+            let mut x = b.clone();
+            dense.solve_with(executor, &mut x).unwrap();
+            let mut residual = b.clone();
+            let sizes = [n, n, columns];
+            subtract_product(executor, (&mut residual, n), (&a, n), (&x, n), sizes);
+            (x, residual)
+        };
+        let (x, residual) = solve(&Threads);
+        assert!(largest(&residual) < 1e-12, "{}", largest(&residual));
+        assert!((x, residual) == solve(&SequentialExecutor));
+    }
 
     #[test]
     fn a_dense_system_is_solved_and_a_singular_one_detected() {

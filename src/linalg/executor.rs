@@ -33,3 +33,17 @@ pub fn each<T: Send>(executor: &dyn Executor, items: &mut [T], job: &(dyn Fn(&mu
         }
     }
 }
+
+/// Starts a thread for every first task, in tests.
+#[cfg(test)]
+pub(crate) struct Threads;
+
+#[cfg(test)]
+impl Executor for Threads {
+    fn join(&self, first: &mut (dyn FnMut() + Send), second: &mut (dyn FnMut() + Send)) {
+        std::thread::scope(|scope| {
+            scope.spawn(first);
+            second();
+        });
+    }
+}

@@ -242,4 +242,22 @@ mod tests {
         let all: Vec<_> = pattern.iter().collect();
         assert_eq!(all[values], [(4, 4), (4, 5), (5, 5)]);
     }
+
+    #[test]
+    fn entries_in_any_order_and_repeated_give_one_each() {
+        let entries = vec![
+            (2, 2),
+            (1, 0),
+            (0, 0),
+            (1, 0),
+            (2, 0),
+            (0, 2),
+            (2, 2),
+            (1, 0),
+        ];
+        let pattern = Pattern::new(3, entries);
+        let all: Vec<_> = pattern.iter().collect();
+        assert_eq!(all, [(0, 0), (1, 0), (2, 0), (0, 2), (2, 2)]);
+        assert_eq!((pattern.entries(), pattern.slot(0, 2)), (5, Some(3)));
+    }
 }

@@ -378,7 +378,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::executor::SequentialExecutor;
+    use crate::executor::{SequentialExecutor, Threads};
     use nalgebra::{DMatrix, DVector};
 
     /// A symmetric matrix with the pattern of a plane grid, indefinite if `pull` is large.
@@ -433,18 +433,6 @@ mod tests {
                 .recover(b.as_slice(), known.as_slice(), &mut x)
                 .unwrap();
             assert!((&a * DVector::from_vec(x) - &b).amax() < 1e-11);
-        }
-    }
-
-    /// Starts a thread for every first task.
-    struct Threads;
-
-    impl Executor for Threads {
-        fn join(&self, first: &mut (dyn FnMut() + Send), second: &mut (dyn FnMut() + Send)) {
-            std::thread::scope(|scope| {
-                scope.spawn(first);
-                second();
-            });
         }
     }
 

@@ -1,6 +1,6 @@
 //! Whether the last equilibrium is lost: with the loads of the smallest increment that fails held, a damped motion
-//! ([`stickslip_core::Motion`]) leaves it. Near an equilibrium it would stop. What it leaves is this branch: further away it may
-//! find another one.
+//! ([`stickslip_core::Motion`]) leaves it. Near an equilibrium the motion would stop. This is evidence for one branch: another
+//! equilibrium may exist further away.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
