@@ -113,6 +113,8 @@ records! {
         fallbacks: Vec<FallbackRecord>,
         /// Loads of increments that jumped to another branch of equilibrium
         jumps: Vec<f64>,
+        /// Increments that a damped motion led to; the friction law holds for each step of the motion, not from its start to its end
+        motions: Vec<MotionRecord>,
         /// Loads at which equilibrium became unstable
         unstable: Vec<f64>,
         /// Stability of the accepted states; empty without `--stability`
@@ -151,6 +153,20 @@ records! {
         fallback: &'static str,
         /// Load factor
         load: f64,
+    }
+
+    /// An increment that a damped motion led to (page `jumps`).
+    MotionRecord "motion" {
+        /// Increment, from 1
+        increment: u32,
+        /// Load factor
+        load: f64,
+        /// Load factor of the equilibrium from which the motion started
+        from: f64,
+        /// Number of steps
+        steps: u32,
+        /// Work of the viscosity
+        dissipated: f64,
     }
 
     /// The start of a range of loads with the same stability.

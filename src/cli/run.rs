@@ -309,6 +309,7 @@ impl<'a> Run<'a> {
             works: result.works,
             fallbacks: tally.fallbacks(),
             jumps: tally.jumps.clone(),
+            motions: tally.motions.clone(),
             unstable: tally.losses.clone(),
             stability: stability.map(Stretches::records).unwrap_or_default(),
             warnings: tally.messages.warnings.clone(),

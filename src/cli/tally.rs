@@ -2,7 +2,7 @@
 
 use super::base::{Error, OutputState, notify};
 use super::progress::Progress;
-use super::records::{FallbackRecord, MonitorRecord, SlaveRecord, StabilityRecord};
+use super::records::{FallbackRecord, MonitorRecord, MotionRecord, SlaveRecord, StabilityRecord};
 use super::run_outputs::{RunOutputs, first_closed, send};
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
@@ -91,6 +91,8 @@ pub struct Tally<'a> {
     pub found: BTreeMap<Fallback, Vec<f64>>,
     /// Load factors of accepted increments that jumped, and of those that lost stability.
     pub jumps: Vec<f64>,
+    /// Accepted increments that damped motions led to.
+    pub motions: Vec<MotionRecord>,
     pub losses: Vec<f64>,
     /// Before the first of these: the body that has no friction left, and the load factor since when.
     pub without_friction: Option<(String, f64)>,
@@ -130,6 +132,7 @@ impl<'a> Tally<'a> {
             violated: 0,
             found: BTreeMap::new(),
             jumps: Vec::new(),
+            motions: Vec::new(),
             losses: Vec::new(),
             without_friction: None,
             recoveries: BTreeMap::new(),
@@ -307,6 +310,7 @@ impl<'a> Tally<'a> {
             jumped,
             unstable,
             found,
+            motion,
             ref marked,
             ..
         } = event.outcome
@@ -317,6 +321,13 @@ impl<'a> Tally<'a> {
         if let Some(by) = found {
             self.found.entry(by).or_default().push(event.load_factor);
         }
+        self.motions.extend(motion.map(|motion| MotionRecord {
+            increment: event.position.increment,
+            load: event.load_factor,
+            from: motion.from,
+            steps: motion.steps,
+            dissipated: motion.dissipated,
+        }));
         match unstable {
             Some(_) => self.losses.push(event.load_factor),
             None if jumped => self.jumps.push(event.load_factor),

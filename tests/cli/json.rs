@@ -210,6 +210,37 @@ fn a_run_agrees_with_its_csv() {
 }
 
 #[test]
+fn a_run_lists_the_increments_that_damped_motions_led_to() {
+    let run = [
+        "run",
+        "02-two-cantilevers-rough",
+        "--set",
+        "history.jumps=dynamic",
+        "--set",
+        "friction.angle=8",
+        "--set",
+        "history.increment=0.5",
+    ];
+    let record = json(&well(&ran(&[&run[..], &["--json"]].concat())));
+    let table = rows(&well(&ran(&[&run[..], &["--csv", "-"]].concat())));
+    let moved = table.iter().filter(|row| row["steps"] != "0");
+    let motions = list(&record["motions"]);
+    assert!(!motions.is_empty());
+    assert_eq!(motions.len(), moved.clone().count());
+    for (motion, row) in motions.iter().zip(moved) {
+        assert_eq!(motion["increment"].to_string(), row["increment"]);
+        assert_eq!(motion["steps"].to_string(), row["steps"]);
+        for (field, column) in [
+            ("load", "load"),
+            ("from", "let_go"),
+            ("dissipated", "dissipated"),
+        ] {
+            assert!(same(&motion[field], &row[column]), "{motion}");
+        }
+    }
+}
+
+#[test]
 fn a_failed_run_agrees_with_its_trace_and_text_quiet_or_not() {
     let folder = tempfile::tempdir().unwrap();
     let trace = folder.path().join("trace.csv");

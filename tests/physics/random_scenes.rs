@@ -32,14 +32,16 @@ fn no_accepted_increment_of_a_random_scene_is_wrong() {
 /// From its start to its end, a damped motion in which nodes slide and stick again breaks the law of friction; no step does.
 #[test]
 fn damped_motions_are_judged_step_by_step() {
-    let file = concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/tests/findings/slides-and-sticks-again-in-motion.ron"
-    );
-    let trial = attempt(&Scene::open(file, &[]).unwrap());
-    assert_eq!(trial.end, End::Finished);
-    assert!(trial.fallbacks.contains(&Fallback::Release));
-    assert!(trial.wrong.is_empty(), "{:?}", trial.wrong);
+    for name in [
+        "slides-and-sticks-again-in-motion",
+        "slips-off-in-several-motions",
+    ] {
+        let file = format!("{}/tests/findings/{name}.ron", env!("CARGO_MANIFEST_DIR"));
+        let trial = attempt(&Scene::open(&file, &[]).unwrap());
+        assert_eq!(trial.end, End::Finished, "{name}");
+        assert!(trial.fallbacks.contains(&Fallback::Release), "{name}");
+        assert!(trial.wrong.is_empty(), "{name}: {:?}", trial.wrong);
+    }
 }
 
 #[test]

@@ -10,7 +10,7 @@ use crate::step::state::Progress;
 use crate::strategy;
 use crate::{
     AssumedMode, ContactRecord, ContactState, Decision, Failure, Forced, Mode, NodeKinematics,
-    NotFound, Outcome, Rule, SearchProgress, Singular, State, Stepper, Test,
+    NotFound, Outcome, Rule, SearchProgress, Singular, State, Stepper, Strategy, Test,
 };
 use std::cell::RefCell;
 
@@ -40,8 +40,12 @@ impl Stepper {
         let proven = matches!(why, Failure::NoAnswer { .. });
         let contacts = self.now.state.nodes.len();
         let mut next = strategy::next_rung(chosen, search.rung, contacts);
+        // A search repeats a step of its damped motion with more drag, which costs less than sweeps.
+        let recovery = &self.now.state.recovery;
+        let moves = recovery.motion.is_some() && recovery.fallback.is_some();
         if let Some((rung, to)) = next
-            && self.left_out == Some(OmittedStep::Strategy(to))
+            && (self.left_out == Some(OmittedStep::Strategy(to))
+                || moves && to == Strategy::GaussSeidel)
         {
             next = strategy::next_rung(chosen, rung, contacts);
         }

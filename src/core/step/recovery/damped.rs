@@ -96,6 +96,7 @@ fn slower(slow: SmallerStepReason, stalled: &FailedIncrement<'_>) -> Option<Retr
         motion.coming_to_rest = false;
     } else if motion.drag < STIFFEST * motion.stiffness {
         motion.drag *= FASTER;
+        motion.slowed = true;
     } else {
         return None;
     }
@@ -225,7 +226,9 @@ impl Iterate {
         motion.steps += 1;
         motion.travelled += moved;
         motion.dissipated += motion.drag * square_of_motion(self);
-        if moved < SHORT * stride {
+        // With less drag the next step would probably fail like this one, which costs a search the whole ladder.
+        let keeps = std::mem::take(&mut motion.slowed) && self.state.recovery.fallback.is_some();
+        if moved < SHORT * stride && !keeps {
             let room = SHORT * stride / moved.max(f64::MIN_POSITIVE);
             motion.drag /= room.clamp(1.0, FASTER);
         }

@@ -21,6 +21,9 @@ pub struct Motion {
     pub coming_to_rest: bool,
     /// Drag at the last such attempt; infinite before the first.
     pub tried: f64,
+    /// Whether the current step was tried with less drag before.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub slowed: bool,
 }
 
 impl Motion {
@@ -35,6 +38,7 @@ impl Motion {
             dissipated: 0.0,
             coming_to_rest: false,
             tried: f64::MAX,
+            slowed: false,
         }
     }
 
