@@ -3,8 +3,11 @@
 //! Nothing is rounded, so that a trace made from the messages has the same bits.
 
 use stickslip_core::contact::record::{self};
-use stickslip_core::model::{Axis, Bond, Control, Jumps, MonitorQuantity};
-use stickslip_core::{ContactRecord, Event, Failure, Model, Norms, Outcome, State};
+use stickslip_core::model::Axis;
+use stickslip_core::{
+    Bond, ContactRecord, Control, Event, Failure, Jumps, Model, MonitorQuantity, Norms, Outcome,
+    State,
+};
 use stickslip_debugger::explain::failures;
 use stickslip_debugger::explain::names;
 use stickslip_exchange::attach::message::{

@@ -11,17 +11,15 @@ use super::solver::{SolverArgs, step_to_end};
 use std::path::Path;
 use std::sync::Arc;
 use stickslip_attach::Attached;
-use stickslip_core::words::counted;
-use stickslip_core::{JudgedLaw, Model, Outcome, RunEnd, Solver};
+use stickslip_core::{JudgedLaw, Model, Outcome, RunEnd, Solver, counted};
 use stickslip_debugger::Snapshot;
 use stickslip_debugger::explain::audit::{Audit, PenetratingMaster, StretchFinding, WorstFinding};
 use stickslip_debugger::explain::judged;
 use stickslip_debugger::explain::names;
 use stickslip_debugger::explain::report;
 use stickslip_debugger::explain::strain;
-use stickslip_scene::number::{shortest, sig2, sig4};
 use stickslip_scene::solver::solver;
-use stickslip_scene::{FileKind, Scene};
+use stickslip_scene::{FileKind, Scene, shortest, sig2, sig4};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {

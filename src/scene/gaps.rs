@@ -2,6 +2,7 @@
 //! effect of `settings.initial_gaps`.
 
 use crate::geometry::distance_to_segment;
+use crate::joined;
 use crate::number::sig4;
 use crate::pressed;
 use std::cell::LazyCell;
@@ -9,9 +10,10 @@ use std::collections::HashSet;
 use stickslip_core::contact::facing::{MOST as MOST_SURFACES, faced};
 use stickslip_core::contact::projection::{project, projection_at};
 use stickslip_core::fem::lagrange;
-use stickslip_core::model::{Body, BodyKind, Contact, InitialGaps, Node, Surface};
 use stickslip_core::plane::dot;
-use stickslip_core::{Model, SurfaceElement, SurfacePoint};
+use stickslip_core::{
+    Body, BodyKind, Contact, InitialGaps, Model, Node, Surface, SurfaceElement, SurfacePoint,
+};
 
 /// Gaps below this fraction of the scene's length count as zero.
 const NONE: f64 = 1e-9;
@@ -358,13 +360,15 @@ impl Outline {
 }
 
 fn some(model: &Model, slaves: &[usize]) -> String {
-    let names: Vec<&str> = slaves
-        .iter()
-        .take(MOST)
-        .map(|&slave| model.nodes[model.contacts[slave].node].name.as_str())
-        .collect();
+    let names = joined(
+        slaves
+            .iter()
+            .take(MOST)
+            .map(|&slave| model.nodes[model.contacts[slave].node].name.as_str()),
+        ", ",
+    );
     let more = if slaves.len() > MOST { ", …" } else { "" };
-    names.join(", ") + more
+    names + more
 }
 
 /// Moves slave nodes that start inside, or at most `within` away (length), onto their surfaces.

@@ -3,8 +3,8 @@
 use super::limits;
 use crate::format::error::{Fault, Path, bail};
 use stickslip_core::fem::continuum;
-use stickslip_core::model::{ElementKind, Node};
 use stickslip_core::plane::{cross, distance, dot, minus};
+use stickslip_core::{ElementKind, Node};
 
 /// Rejects chains with an element whose nodes coincide or whose curve folds back or has zero velocity.
 ///

@@ -12,7 +12,7 @@ use crate::format::read;
 use crate::format::spec::Nodes;
 use crate::{SceneError, Spec};
 use std::collections::HashMap;
-use stickslip_core::model::ElementKind;
+use stickslip_core::ElementKind;
 use stickslip_exchange::gmsh;
 use stickslip_exchange::mesh::{Cell, CellKind, Mesh};
 use stickslip_exchange::vtu::cell_type;

@@ -49,6 +49,8 @@ mod pressed;
 pub use compile::increments;
 pub use embedded::EmbeddedFile;
 pub use format::{SceneError, Spec};
+pub use number::{shortest, sig2, sig4, sig6};
 pub use problems::siconos;
 pub use readers::{FileKind, IN_SPACE};
 pub use scene::Scene;
+pub use shown::{aligned, first_of, joined};

@@ -5,10 +5,9 @@
 //! stretch is at most s, regardless of lateral motion. A point is prescribed by a support, by a prescribed displacement, or by a
 //! rigid surface that approaches it by more than its gap.
 
-use stickslip_core::Model;
 use stickslip_core::contact::projection::{project, projection_at};
 use stickslip_core::fem::deformation::{SOFTENING, StretchRange};
-use stickslip_core::model::{Body, BodyKind, Solid};
+use stickslip_core::{Body, BodyKind, Model, Solid};
 
 /// Cosine above which a surface's normal counts as along an axis.
 const ALONG: f64 = 0.99;

@@ -112,7 +112,7 @@ impl ActionEntry {
             (Verb::Set, 0) if context.offers.is_none() => set_paths(context),
             (Verb::Set, 1) => values(before)
                 .iter()
-                .map(|value| value.to_string())
+                .map(std::string::ToString::to_string)
                 .collect(),
             (Verb::Open, 0) => context.scenes.to_vec(),
             (Verb::Help, 0) => manual::PAGES.iter().map(|page| page.topic.into()).collect(),

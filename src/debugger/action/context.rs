@@ -6,7 +6,7 @@ use super::table::{ActionEntry, begun, by_name};
 use crate::Tree;
 use stickslip_core::interface::census::MOST;
 use stickslip_core::{Capabilities, Model, State};
-use stickslip_scene::{EmbeddedFile, Scene};
+use stickslip_scene::{EmbeddedFile, Scene, joined};
 
 /// What the arguments of actions can refer to.
 #[derive(Debug, Clone, Copy, Default)]
@@ -150,7 +150,7 @@ pub(super) fn names(model: &Model) -> impl Iterator<Item = &str> {
 /// The first few names of slave nodes, for messages.
 fn some_names(model: &Model) -> String {
     const SHOWN: usize = 4;
-    let mut list = names(model).take(SHOWN).collect::<Vec<_>>().join(", ");
+    let mut list = joined(names(model).take(SHOWN), ", ");
     if model.contacts.len() > SHOWN {
         list += ", …";
     }

@@ -7,12 +7,11 @@
 
 use stickslip_core::contact::closest_points::place;
 use stickslip_core::fem::deformation::deformation;
-use stickslip_core::model::{BodyKind, Solid};
 use stickslip_core::plane::{dot, minus};
 use stickslip_core::step::judged::{self, ReferenceSizes};
 use stickslip_core::{
-    Event, Finding, JudgedLaw, Model, Outcome, PointDeformation, Solver, Stepper, SurfaceElement,
-    Verdict,
+    BodyKind, Event, Finding, JudgedLaw, Model, Outcome, PointDeformation, Solid, Solver, Stepper,
+    SurfaceElement, Verdict,
 };
 
 /// Number of points per edge of an outline, for the search for nodes inside it.

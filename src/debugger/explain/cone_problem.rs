@@ -8,7 +8,7 @@ use std::sync::Arc;
 use stickslip_core::interface::cone::{self, ConeContact};
 use stickslip_core::interface::cone_census;
 use stickslip_core::{ContactRecord, Event, Mode, Model, ReportedProblem};
-use stickslip_scene::number::sig4;
+use stickslip_scene::sig4;
 
 /// Maximum number of contacts, because the matrix is dense.
 const MOST: usize = 500;

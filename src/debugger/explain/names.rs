@@ -2,7 +2,7 @@
 
 use stickslip_core::step::intervene::Start;
 use stickslip_core::{Mode, Model, Position, Rule};
-use stickslip_scene::number::shortest;
+use stickslip_scene::{joined, shortest};
 
 /// Name of a slave node.
 pub fn slave(model: &Model, slave: usize) -> &str {
@@ -37,11 +37,12 @@ pub fn arrow(degrees: i16) -> &'static str {
 
 /// Initial modes of slave nodes, in words.
 pub fn starts(model: &Model, starts: &[Start]) -> String {
-    starts
-        .iter()
-        .map(|start| format!("{} {}", slave(model, start.slave), mode(start.mode)))
-        .collect::<Vec<_>>()
-        .join(", ")
+    joined(
+        starts
+            .iter()
+            .map(|start| format!("{} {}", slave(model, start.slave), mode(start.mode))),
+        ", ",
+    )
 }
 
 /// Modes in the order of Table 2's rows and columns.

@@ -10,8 +10,7 @@ use stickslip_core::linear::singular::LooseMotion;
 use stickslip_core::model::Factor;
 use stickslip_core::plane::dot;
 use stickslip_core::{Mode, Model, RigidMotion, Singular, State, Stepper};
-use stickslip_scene::number::{shortest, sig4};
-use stickslip_scene::shown::first_of;
+use stickslip_scene::{first_of, shortest, sig4};
 
 /// Maximum number of motions described.
 const MOST: usize = 3;

@@ -2,9 +2,10 @@
 //! ([`stickslip_core::fem::deformation`]).
 
 use stickslip_core::fem::deformation::{StretchRange, deformation};
-use stickslip_core::model::{BodyKind, Elastic, Law, Update};
-use stickslip_core::{Deformation, Failure, Model, PointDeformation, State};
-use stickslip_scene::number::sig4;
+use stickslip_core::{
+    BodyKind, Deformation, Elastic, Failure, Law, Model, PointDeformation, State, Update,
+};
+use stickslip_scene::sig4;
 
 /// Displacements beyond this multiple of the scene's length are meaningless as a shape.
 const LOST: f64 = 10.0;

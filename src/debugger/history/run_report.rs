@@ -7,10 +7,9 @@ use crate::explain::facts::{Fact, Part};
 use crate::explain::headline::brief;
 use crate::explain::strain;
 use stickslip_core::fem::deformation::deformation;
-use stickslip_core::words::{counted, noun_for};
-use stickslip_core::{Model, Outcome};
-use stickslip_scene::number::{shortest, sig4};
-use stickslip_scene::shown::first_of;
+use stickslip_core::words::noun_for;
+use stickslip_core::{Model, Outcome, counted};
+use stickslip_scene::{first_of, shortest, sig4};
 
 /// Maximum number of cuts, loads and increments listed.
 const MOST: usize = 4;

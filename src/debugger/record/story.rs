@@ -3,8 +3,7 @@
 use crate::explain::names;
 use crate::record::journal::{Entry, JournalError, Record, date};
 use crate::{BranchTarget, Command, Unit};
-use stickslip_core::Model;
-use stickslip_core::words::counted;
+use stickslip_core::{Model, counted};
 
 /// The text of a journal.
 ///

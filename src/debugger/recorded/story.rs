@@ -8,6 +8,7 @@ use crate::history::rounds::{Rounds, rounds, words};
 use std::fmt::Write;
 use stickslip_core::{Model, Solver};
 use stickslip_exchange::attach::message::Level;
+use stickslip_scene::joined;
 
 /// Maximum number of contacts named, and of messages shown.
 const NAMED: usize = 6;
@@ -24,11 +25,12 @@ pub fn story(file: &str, opened: &mut OpenedExchange) -> String {
         who.trim()
     );
     let slaves = model.contacts.len();
-    let named: Vec<&str> = (0..slaves.min(NAMED))
-        .map(|s| names::slave(&model, s))
-        .collect();
+    let named = joined(
+        (0..slaves.min(NAMED)).map(|s| names::slave(&model, s)),
+        ", ",
+    );
     let more = if slaves > NAMED { ", …" } else { "" };
-    let _ = writeln!(text, "Contacts: {}{more}.", named.join(", "));
+    let _ = writeln!(text, "Contacts: {named}{more}.");
     if opened.lines.is_empty() {
         text += "\nNo iterations.\n";
     }

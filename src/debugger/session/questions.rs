@@ -11,8 +11,7 @@ use crate::record::export::{self, ExportSource, Origin};
 use crate::record::snapshot;
 use crate::{DiagnosisPage, Examination, ExportError, ExportScope, PointKind, Snapshot};
 use std::path::PathBuf;
-use stickslip_core::Status;
-use stickslip_core::model::BodyKind;
+use stickslip_core::{BodyKind, Status};
 use stickslip_platform::files;
 
 impl Session {

@@ -7,11 +7,10 @@ use super::super::areas::{AreaSide, density, sides};
 use super::super::nodes::Names;
 use crate::Spec;
 use crate::format::error::{Fault, at, bail};
-use stickslip_core::SurfaceElement;
 use stickslip_core::contact::projection::{closest_point, projection_at};
 use stickslip_core::fem::lagrange::gauss;
-use stickslip_core::model::{Body, BodyKind, Contact, Node, Surface};
 use stickslip_core::plane::distance;
+use stickslip_core::{Body, BodyKind, Contact, Node, Surface, SurfaceElement};
 
 /// Minimum number of points of a side. Only where a contact zone ends within a side do they matter (page `decks`): the extreme case
 /// is a ring with one element per side, whose forces scatter by 19 % with 3 to 12 points.

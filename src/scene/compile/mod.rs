@@ -30,8 +30,8 @@ pub use history::increments;
 use layout::Layout;
 pub(crate) use layout::Loads;
 pub(crate) use renewed::{Choices, Compiled, Groups, renewed};
-use stickslip_core::model::{InitialGaps, diagonal};
-use stickslip_core::{Estimate, Model};
+use stickslip_core::model::diagonal;
+use stickslip_core::{Estimate, InitialGaps, Model};
 
 /// Checks a scene.
 pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {

@@ -7,7 +7,7 @@ use crate::Spec;
 use crate::format::error::{AtPath, Fault, Path, at, bail, fault, quoted, some_of};
 use crate::format::spec::Quantity;
 use std::collections::HashMap;
-use stickslip_core::model::{Contact, Control, Dofs, Monitor, MonitorQuantity};
+use stickslip_core::{Contact, Control, Dofs, Monitor, MonitorQuantity};
 
 /// Name of the last monitor of an arc-length history.
 const ARC: &str = "arc";

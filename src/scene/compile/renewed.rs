@@ -10,8 +10,7 @@ use crate::Spec;
 use crate::format::error::{Path, Step};
 use crate::format::paths::ScalarPath;
 use crate::format::spec::SlaveSpec;
-use stickslip_core::model::Control;
-use stickslip_core::{Estimate, Model};
+use stickslip_core::{Control, Estimate, Model};
 
 /// Settings that are used outside the solver too: they move nodes, create surfaces, or make the scene invalid.
 const DEEP: [&str; 4] = ["initial_gaps", "adjust_gap", "point_force", "memory"];

@@ -7,7 +7,7 @@ use crate::format::given::Cells;
 use crate::format::spec::{BodySpec, Material, Nodes};
 use crate::import::element_kind;
 use std::collections::BTreeMap;
-use stickslip_core::model::{ElementKind, Law, Plane, Update};
+use stickslip_core::{ElementKind, Law, Plane, Update};
 use stickslip_exchange::inp::deck::{Element, ElementType, Family, Form, Section};
 use stickslip_exchange::mesh::CellKind;
 

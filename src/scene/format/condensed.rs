@@ -20,10 +20,11 @@ use super::error::{Path, Step, at};
 use super::in_space::SpaceSpec;
 use super::notation;
 use super::spec::{BodySpec, History, LoadSpec, Nodes, SlaveSpec, Spec, SurfaceSpec};
+use crate::joined;
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize};
-use stickslip_core::model::{InitialState, SlavePoints};
-use stickslip_core::{Friction, Mode, Settings};
+use stickslip_core::model::SlavePoints;
+use stickslip_core::{Friction, InitialState, Mode, Settings};
 
 /// First word of an interface problem file.
 pub const HEAD: &str = "Contacts";
@@ -375,11 +376,7 @@ fn lists(rows: &[Vec<f64>]) -> Vec<String> {
 
 /// Numbers separated by commas; zero is written without a sign.
 fn list(numbers: &[f64]) -> String {
-    numbers
-        .iter()
-        .map(|&x| format!("{:?}", x + 0.0))
-        .collect::<Vec<_>>()
-        .join(", ")
+    joined(numbers.iter().map(|&x| format!("{:?}", x + 0.0)), ", ")
 }
 
 fn quoted(text: &str) -> String {

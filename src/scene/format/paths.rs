@@ -6,6 +6,7 @@
 use super::described::{Described, ScalarPlace, Visit};
 use super::error::{Path, SetError, nearest, quoted};
 use super::spec::Spec;
+use crate::joined;
 use stickslip_core::Settings;
 
 /// A value set from outside.
@@ -190,13 +191,7 @@ fn unknown(spec: &Spec, path: &str) -> String {
 fn first_of(names: &[&str]) -> String {
     const MOST: usize = 8;
     let more = if names.len() > MOST { ", …" } else { "" };
-    names
-        .iter()
-        .take(MOST)
-        .copied()
-        .collect::<Vec<_>>()
-        .join(", ")
-        + more
+    joined(names.iter().take(MOST), ", ") + more
 }
 
 /// Visits every scalar in file order. Omitted fields of slave groups and of the history whose default depends on other values are

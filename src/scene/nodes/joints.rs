@@ -5,8 +5,8 @@ use crate::format::error::{Fault, Path, at, bail, fault};
 use crate::format::spec::Nodes;
 use crate::number::sig4;
 use std::collections::HashSet;
+use stickslip_core::counted;
 use stickslip_core::plane::distance;
-use stickslip_core::words::counted;
 
 impl Names {
     /// Adds a mesh of several blocks, and returns the node pairs that its joints merge: the node that stays and the one that is

@@ -5,8 +5,7 @@ use crate::format::error::{Fault, Path, bail};
 use crate::shown::first_of;
 use std::collections::{HashMap, HashSet};
 use stickslip_core::fem::lagrange::MAX_NODES;
-use stickslip_core::model::Node;
-use stickslip_core::words::counted;
+use stickslip_core::{Node, counted};
 
 /// Sides in walking order.
 #[derive(Debug, Clone, PartialEq, Default)]

@@ -12,11 +12,12 @@ use crate::RoundOff;
 use crate::explain::conditions::{Given, conditions};
 use crate::explain::names;
 use crate::explain::outline::{self, Bounds, Point, Projection, curve, extent};
-use stickslip_core::model::{BodyKind, SolidElement};
+use stickslip_core::model::SolidElement;
 use stickslip_core::plane::distance;
-use stickslip_core::words::counted;
-use stickslip_core::{ContactRecord, Mode, Model, Outcome, Status, Stepper, SurfaceElement};
-use stickslip_scene::number::{shortest, sig4};
+use stickslip_core::{
+    BodyKind, ContactRecord, Mode, Model, Outcome, Status, Stepper, SurfaceElement, counted,
+};
+use stickslip_scene::{shortest, sig4};
 use stickslip_study::drawn::PlotError;
 use stickslip_study::origin;
 use stickslip_study::placing::{OccupiedArea, Patch};

@@ -9,6 +9,7 @@ use stickslip_exchange::inp::Deck;
 use stickslip_exchange::inp::deck::{
     Adjust, Faces, Family, Interaction, Normal, Section, Set, Step, Value,
 };
+use stickslip_scene::joined;
 
 /// Position tolerance of a tie without one, in sizes of a master face (CalculiX: 2.5 %).
 const TIE_TOLERANCE: f64 = 0.025;
@@ -286,8 +287,8 @@ impl<'d> DeckShape<'d> {
     /// Name of a group: its bodies.
     pub fn group_name(&self, group: usize) -> String {
         let own = (0..self.bodies.len()).filter(|body| self.group_of[*body] == group);
-        let names: Vec<&str> = own.map(|body| self.bodies[body].as_str()).collect();
-        names.join(" with ")
+
+        joined(own.map(|body| &self.bodies[body]), " with ")
     }
 
     /// The pairs that touch a group.
