@@ -55,14 +55,14 @@ pub fn scene(model: &Model) -> Scene {
     }
 }
 
-fn node(node: &stickslip_core::model::Node) -> message::NodeMessage {
+fn node(node: &stickslip_core::Node) -> message::NodeMessage {
     message::NodeMessage {
         name: node.name.clone(),
         at: Some(node.at.into()),
     }
 }
 
-fn surface(surface: &stickslip_core::model::Surface) -> SurfaceMessage {
+fn surface(surface: &stickslip_core::Surface) -> SurfaceMessage {
     let mut nodes: Vec<usize> = Vec::new();
     for element in &surface.elements {
         match nodes.last() {
@@ -105,7 +105,7 @@ fn of_contact(model: &Model, k: usize) -> Contact {
     }
 }
 
-fn monitor(monitor: &stickslip_core::model::Monitor) -> Monitor {
+fn monitor(monitor: &stickslip_core::Monitor) -> Monitor {
     let kind = match &monitor.of {
         MonitorQuantity::Contact {
             axis: Axis::X | Axis::Y,

@@ -310,7 +310,7 @@ fn survey_lines(survey: &Survey) -> Vec<String> {
         ["strategy"]
             .iter()
             .chain(&heads)
-            .map(std::string::ToString::to_string)
+            .map(|word| word.to_string())
             .collect(),
     ];
     for (v, variant) in survey.variants.iter().enumerate() {

@@ -3,10 +3,10 @@
 use super::Scene;
 use crate::format::contact_law::ContactLaw;
 use crate::format::spec::SlaveSpec;
+use crate::gaps::from_to;
 use crate::joined;
-use crate::number::sig4;
 use std::collections::HashSet;
-use stickslip_core::{Contact, Model, Surface, counted};
+use stickslip_core::{Contact, Model, Surface, counted, plane};
 
 /// One line per contact law other than hard contact that a slave node has; empty without any.
 pub fn words(scene: &Scene) -> Vec<String> {
@@ -111,13 +111,8 @@ fn left_out(scene: &Scene) -> Option<String> {
 
 /// The smallest and the largest value.
 fn range(values: &[f64]) -> String {
-    let least = values.iter().copied().fold(f64::INFINITY, f64::min);
-    let largest = values.iter().copied().fold(0.0, f64::max);
-    if least == largest {
-        sig4(least)
-    } else {
-        format!("{} to {}", sig4(least), sig4(largest))
-    }
+    let [least, largest] = plane::range(values.iter().copied());
+    from_to(least, largest)
 }
 
 /// Total tributary area, and the number of nodes without one.

@@ -4,6 +4,7 @@ use super::Scene;
 use super::compile::increments;
 use super::{gaps, limits};
 use crate::format::error::some_of;
+use crate::groups::marked;
 use crate::joined;
 use crate::number::sig6;
 use std::fmt;
@@ -63,12 +64,8 @@ impl Cost {
                 .filter(|&d| dofs.equation[d].is_some())
                 .count()
         };
-        let mut on_body = vec![false; model.nodes.len()];
-        model
-            .bodies
-            .iter()
-            .flat_map(|b| &b.nodes)
-            .for_each(|&n| on_body[n] = true);
+        let nodes = model.bodies.iter().flat_map(|body| &body.nodes);
+        let on_body = marked(model.nodes.len(), nodes);
         let on_bodies = on_body.iter().filter(|on| **on).count();
         let of_bodies: usize = (0..model.nodes.len())
             .filter(|&n| on_body[n])

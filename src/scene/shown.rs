@@ -48,6 +48,16 @@ pub fn joined<T: std::fmt::Display>(items: impl IntoIterator<Item = T>, separato
     items.join(separator)
 }
 
+/// The first few items, and an ellipsis if there are more.
+pub fn few<T: std::fmt::Display>(items: impl IntoIterator<Item = T>, most: usize) -> String {
+    let mut items = items.into_iter();
+    let first = joined(items.by_ref().take(most), ", ");
+    match items.next() {
+        None => first,
+        Some(_) => first + ", …",
+    }
+}
+
 /// The first few items, with a separator between them, and the number of the others.
 pub fn first_of<T: std::fmt::Display>(
     items: impl IntoIterator<Item = T>,

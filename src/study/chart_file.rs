@@ -201,10 +201,7 @@ fn any() -> Vec<Series> {
         name: name.to_owned(),
         vary: vec![Vary {
             path: path.to_owned(),
-            values: values
-                .iter()
-                .map(std::string::ToString::to_string)
-                .collect(),
+            values: values.iter().map(|word| word.to_string()).collect(),
         }],
         set: Vec::new(),
     };

@@ -51,7 +51,7 @@ pub fn problem(model: &Model, state: &State, posed: &ReportedProblem) -> Problem
         free: free.collect(),
         spacing: None,
         history: Default::default(),
-        settings: stickslip_core::model::Settings {
+        settings: stickslip_core::Settings {
             strategy: Strategy::Table2,
             ..Default::default()
         },

@@ -464,7 +464,7 @@ impl PageBuilder {
 
     /// The first strategy's failure in this major iteration, before the ladder continued.
     fn explain_first(&mut self, model: &Model, first: &Failure) {
-        let members: &[(usize, Vec<stickslip_core::model::Mode>)] = match first {
+        let members: &[(usize, Vec<stickslip_core::Mode>)] = match first {
             Failure::Cycle(cycle) => &cycle.members,
             _ => &[],
         };

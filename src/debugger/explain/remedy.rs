@@ -10,7 +10,7 @@ use super::names;
 use super::strain::{self, MaterialCause};
 use stickslip_core::contact::projection::projection_at;
 use stickslip_core::model::{AtCycle, Geometry, ResidualMethod, Sticking};
-use stickslip_core::step::intervene::{Start, Value};
+use stickslip_core::step::intervene::Value;
 use stickslip_core::{
     BoundUpdate, Failure, InitialGaps, Intervention, Jumps, Mode, Model, Parameter, SearchMode,
     Settings, State, Strategy, Touch,
@@ -281,14 +281,10 @@ impl Remedy {
         let count = found.census.as_ref().map_or(0, |c| c.answers.len());
         let answer = |number: usize| {
             let starts = found.starts(number)?;
-            const SHOWN: usize = 2;
-            let name =
-                |s: &Start| format!("{} {}", names::slave(model, s.slave), names::mode(s.mode));
-            let some = joined(starts.iter().take(SHOWN).map(name), ", ");
-            let more = if starts.len() > SHOWN { ", …" } else { "" };
+            let some = names::starts(model, &starts, 2);
             Some(Remedy {
                 kind: RemedyKind::Answer(number),
-                label: format!("state {}: {}{more}", number + 1, some),
+                label: format!("state {}: {some}", number + 1),
                 how: RemedyInput::StartFrom(number),
                 first: vec![Intervention::Assume(starts)],
             })

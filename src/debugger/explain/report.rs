@@ -449,7 +449,7 @@ pub fn intervention(model: &Model, intervention: &Intervention) -> String {
         Intervention::Assume(starts) => {
             format!(
                 "the next minor iteration starts with {}",
-                names::starts(model, starts)
+                names::starts(model, starts, usize::MAX)
             )
         }
         Intervention::Release { slave: s } => format!("{} follows Table 2 again", slave(model, *s)),

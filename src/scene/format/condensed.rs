@@ -25,6 +25,7 @@ use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize};
 use stickslip_core::model::SlavePoints;
 use stickslip_core::{Friction, InitialState, Mode, Settings};
+use stickslip_exchange::problem;
 
 /// First word of an interface problem file.
 pub const HEAD: &str = "Contacts";
@@ -250,17 +251,9 @@ impl Problem {
             contacts: self.contacts.iter().map(contact).collect(),
             compliance: match &self.matrix {
                 Matrix::Entries(entries) => entries.clone(),
-                Matrix::Compliance(rows) | Matrix::Stiffness(rows) => rows
-                    .iter()
-                    .enumerate()
-                    .flat_map(|(i, row)| {
-                        row.iter()
-                            .enumerate()
-                            .filter(|(_, w)| **w != 0.0)
-                            .map(|(j, &w)| (i, j, w))
-                            .collect::<Vec<_>>()
-                    })
-                    .collect(),
+                Matrix::Compliance(rows) | Matrix::Stiffness(rows) => {
+                    problem::Matrix::from_rows(rows).entries
+                }
             },
             free,
         }

@@ -2,6 +2,7 @@
 
 use super::elements::{Element, named};
 use crate::format::error::{Fault, Path, bail};
+use crate::groups::marked;
 use crate::shown::first_of;
 use std::collections::{HashMap, HashSet};
 use stickslip_core::fem::lagrange::MAX_NODES;
@@ -75,8 +76,7 @@ impl Faces {
     pub fn among<'a>(named: impl Iterator<Item = &'a usize>, elements: &[Element]) -> Faces {
         let named: HashSet<usize> = named.copied().collect();
         let last = named.iter().max().map_or(0, |n| n + 1);
-        let mut is_named = vec![false; last];
-        named.iter().for_each(|&n| is_named[n] = true);
+        let is_named = marked(last, &named);
         let has = |n: usize| is_named.get(n) == Some(&true);
         let mut faces = Faces {
             middles: HashMap::new(),

@@ -242,8 +242,7 @@ fn motion(model: &Model, state: &State, grid: &mut Grid) {
 }
 
 fn stresses(model: &Model, state: &State, grid: &mut Grid) {
-    let solid = |kind: &BodyKind| matches!(kind, BodyKind::Solid(_));
-    if !model.bodies.iter().any(|body| solid(&body.kind)) {
+    if !model.has_solids() {
         return;
     }
     let known = recovery::nodal_stresses(

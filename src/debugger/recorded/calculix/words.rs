@@ -24,13 +24,8 @@ const MOST_MEMBERS: usize = 4;
 /// Numbers of steps, increments, attempts, iterations and contacts.
 fn size(run: &CalculixRun) -> String {
     let files = &run.files;
-    let mut increments: Vec<_> = files
-        .attempts
-        .iter()
-        .map(|a| (a.step, a.increment))
-        .collect();
-    increments.dedup();
-    let mut steps: Vec<_> = increments.iter().map(|(step, _)| step).collect();
+    let increments = run.increments();
+    let mut steps: Vec<u32> = increments.iter().map(|(step, _)| *step).collect();
     steps.dedup();
     [
         (steps.len(), "step"),
