@@ -12,8 +12,7 @@
 use crate::model::{SlipCount, Sticking, TieRule};
 use crate::step::iterate::Iterate;
 use crate::{
-    Failure, Finding, Forced, JudgedLaw, Norms, Outcome, PointDeformation, Source, State, Stepper,
-    Verdict,
+    Failure, Finding, Forced, JudgedLaw, Norms, Outcome, PointDeformation, State, Stepper, Verdict,
 };
 
 impl Stepper {
@@ -22,9 +21,11 @@ impl Stepper {
         if let Some(on) = self.now.turn_to_goal(after) {
             return on;
         }
-        if let Some(point) = self.now.inverted() {
+        let deformation = self.now.source.deformation(&self.now.state.u);
+        if let Some(point) = deformation.and_then(|found| found.inverted()) {
             return self.refuse_inverted(point);
         }
+        self.now.outside = deformation.and_then(|found| found.outside);
         let verdict = self.now.source.judge(&self.now.state.at(), &after);
         if self.now.state.recovery.motion.is_some() {
             let worst = worst_of(&verdict);
@@ -74,6 +75,16 @@ impl Iterate {
         self.source.deformation(&self.state.u)?.inverted()
     }
 
+    /// Takes the worst point outside the range of its law in the state that is being accepted. `None` if all are inside, or if a
+    /// point was already outside in the last accepted state.
+    pub(super) fn take_range_left(&mut self) -> Option<PointDeformation> {
+        let inside_before = || {
+            let before = self.source.deformation(&self.state.start.u);
+            before.is_none_or(|found| found.outside.is_none())
+        };
+        self.outside.take().filter(|_| inside_before())
+    }
+
     /// Restores the anchors of the nodes that touched when the increment started, for the rest of the attempt, and continues with
     /// another major iteration.
     fn count_net_slip(&mut self) {
@@ -102,13 +113,6 @@ impl State {
                 .iter()
                 .any(|node| matches!(node.forced, Forced::Held(_)))
     }
-}
-
-/// Worst point of a state outside the range of its law. `None` if all are inside, or if a point was already outside in the last
-/// accepted state.
-pub(super) fn range_left(source: &dyn Source, state: &State) -> Option<PointDeformation> {
-    let outside = |u: &[f64]| source.deformation(u)?.outside;
-    outside(&state.u).filter(|_| outside(&state.start.u).is_none())
 }
 
 /// Whether a law concerns the net slip of a node.
