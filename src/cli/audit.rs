@@ -101,13 +101,13 @@ const INTERRUPTED: &str = "interrupted";
 fn one(course: &Course, says: bool, interrupt: &Interrupt) -> Result<HistoryRecord, Error> {
     let mut stepper = solver(Arc::new(course.scene.model.clone()));
     let mut audit = Audit::default();
-    let end = course.go(&mut stepper, interrupt, &mut |stepper| {
+    let end = course.go(&mut stepper, interrupt, |stepper| {
         let failed = matches!(stepper.event().outcome, Outcome::Failed(_));
         if !failed || course.steps.is_some() {
             audit.take(stepper);
         }
     })?;
-    history(&course.scene, &audit, end, &stepper, says)?
+    history(&course.scene, &audit, end, &stepper, says)
 }
 
 /// Audits the history of an attached solver.
@@ -120,32 +120,30 @@ fn attached(
     let mut audit = Audit::default();
     let see = &mut |solver: &dyn Solver| audit.take_reported(solver);
     let end = step_to_end(solver, Some(interrupt), see)?;
-    let Ok(history) = history(scene, &audit, end, solver, says)?;
-    Ok(history)
+    history(scene, &audit, end, solver, says)
 }
 
 /// The report of an audited history.
-fn history<E>(
+fn history<S>(
     scene: &Scene,
     audit: &Audit,
-    end: RunEnd<E>,
+    end: RunEnd<S>,
     solver: &dyn Solver,
     says: bool,
-) -> Result<Result<HistoryRecord, E>, Error> {
+) -> Result<HistoryRecord, Error> {
     let (name, model) = (&scene.name, &scene.model);
     let mut history = record(name, model, audit);
     let failed = match end {
-        RunEnd::Stopped(error) => return Ok(Err(error)),
         RunEnd::Interrupted => {
             notify(&format!("{name}: interrupted"));
             history.outcome = INTERRUPTED;
-            return Ok(Ok(history));
+            return Ok(history);
         }
         RunEnd::Failed(failure) => {
             let event = solver.event();
             Some((event.position, event.load_factor, failure))
         }
-        RunEnd::Finished | RunEnd::Spent => None,
+        RunEnd::Finished | RunEnd::Spent | RunEnd::Stopped(_) => None,
     };
     if says {
         say(&table(name, model, audit))?;
@@ -156,7 +154,7 @@ fn history<E>(
         history.outcome = "failed";
         history.failure = Some(FailureRecord::new(model, position, load, &failure));
     }
-    Ok(Ok(history))
+    Ok(history)
 }
 
 /// The report as data.

@@ -14,6 +14,8 @@
 //! )
 //! ```
 
+use super::figure::assigned;
+use super::plan::product;
 use super::read::{Vary, pairs};
 use super::reference::Reference;
 use serde::Deserialize;
@@ -169,27 +171,12 @@ impl Chart {
 
 /// Runs along the values of a setting: one series for each combination of the others.
 fn series(along: &Vary, others: &[Vary]) -> Vec<Series> {
-    let mut sets: Vec<Vec<(String, String)>> = vec![Vec::new()];
-    for other in others {
-        let extended = sets.iter().flat_map(|set| {
-            let pair = |value: &String| (other.path.clone(), value.clone());
-            other
-                .values
-                .iter()
-                .map(pair)
-                .map(|pair| [&set[..], &[pair]].concat())
-        });
-        sets = extended.collect();
-    }
     let name = |set: &[(String, String)]| match set {
         [] => along.path.clone(),
-        set => set
-            .iter()
-            .map(|(path, value)| format!("{path}={value}"))
-            .collect::<Vec<_>>()
-            .join(", "),
+        set => assigned(set).collect::<Vec<_>>().join(", "),
     };
-    sets.into_iter()
+    product(others)
+        .into_iter()
         .map(|set| Series {
             name: name(&set),
             vary: vec![along.clone()],

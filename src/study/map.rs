@@ -12,9 +12,8 @@ use super::monitor_kind::{MonitorKind, kind};
 use super::origin;
 use super::plan::{Plan, poses};
 use super::result::{CaseEnd, Run};
-use super::solver_pool::{SolverPool, Watch, one};
+use super::run::cells;
 use super::sweep::Sweep;
-use super::sweep_input::Input;
 use super::verdict::RunVerdict;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeSet, HashMap};
@@ -191,21 +190,9 @@ impl MapCell {
 /// The cases of a plan as cells of a sweep; the cases of one problem, which are compared with each other,
 /// belong to one shard.
 pub fn sweep(plan: &Plan) -> Sweep<'_, MapRun> {
-    let compute = |k: usize, spare: &SolverPool, watch: &Watch| {
-        let case = &plan.cases[k];
-        let model = Arc::new(case.model()?);
-        let run = one(case.increments, model.clone(), spare, watch);
-        Ok(MapRun::from_run(&run, &model))
-    };
-    Sweep {
-        input: Input::new("map", plan.input()),
-        cells: plan.cells(poses),
-        units: ["cells", "increments"],
-        is_timed: false,
-        runs: 1,
-        name: Box::new(|k| name(plan, k)),
-        compute: Box::new(compute),
-    }
+    cells(plan, ["map", "cells"], poses, |run, model| {
+        MapRun::from_run(&run, model)
+    })
 }
 
 impl Map {

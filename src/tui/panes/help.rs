@@ -177,34 +177,20 @@ pub fn page(width: usize, theme: &Theme, keymap: &Keymap, context: &Context) -> 
                     [theme.faint; 2],
                 ),
             };
-            for (index, help) in paint::wrap(&help, room).into_iter().enumerate() {
-                let (keys, name) = if index == 0 {
-                    let keys: Vec<&str> = keymap.keys(entry).collect();
-                    (keys.join(" "), name.as_str())
-                } else {
-                    Default::default()
-                };
-                lines.push(Line::from(vec![
-                    Span::styled(format!("   {keys:<KEYS$}"), key_style),
-                    Span::styled(format!("{name:<NAMES$}"), style),
-                    Span::styled(help, style),
-                ]));
-            }
+            let keys: Vec<&str> = keymap.keys(entry).collect();
+            let lead = [
+                Span::styled(format!("   {:<KEYS$}", keys.join(" ")), key_style),
+                Span::styled(format!("{name:<NAMES$}"), style),
+            ];
+            lines.extend(paint::hanging(&lead, &help, room, style));
         }
         lines.push(Line::default());
     }
     lines.push(Line::styled(" Marks", theme.heading));
+    let room = width.saturating_sub(3 + KEYS + 1).max(20);
     for (mark, meaning) in MARKS {
-        for (index, meaning) in paint::wrap(meaning, width.saturating_sub(3 + KEYS + 1).max(20))
-            .into_iter()
-            .enumerate()
-        {
-            let mark = if index == 0 { mark } else { "" };
-            lines.push(Line::from(vec![
-                Span::styled(format!("   {mark:<KEYS$}"), theme.key),
-                Span::raw(meaning),
-            ]));
-        }
+        let lead = Span::styled(format!("   {mark:<KEYS$}"), theme.key);
+        lines.extend(paint::hanging(&[lead], meaning, room, theme.text));
     }
     lines
 }

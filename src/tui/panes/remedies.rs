@@ -50,7 +50,7 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let tried = view.background.and_then(|background| background.tried());
     let Some(tried) = tried else {
         let inner = frame(buffer, area, Pane::Remedies, "Remedies", app);
-        let text = " Press r to try every remedy separately from the shown state.";
+        let text = "Press r to try every remedy separately from the shown state.";
         paint::note(buffer, inner, text, theme);
         return;
     };

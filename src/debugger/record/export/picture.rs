@@ -6,7 +6,7 @@
 
 use super::chart;
 use super::export_state::{ExportError, ExportState, PicturePart};
-use super::timeline::{self, chosen, colour};
+use super::timeline::{self, chosen, marker};
 use super::window::{FORCE, Window};
 use crate::RoundOff;
 use crate::explain::conditions::{Given, conditions};
@@ -58,16 +58,6 @@ pub(super) fn png(shown: &ExportState, _: &mut Stepper) -> Result<Vec<u8>, Expor
         2.0
     };
     Ok(sheet(shown)?.png(pixels)?)
-}
-
-/// The marker of a mode: a circle for free, a triangle for sliding, a square for fixed.
-fn marker(sheet: &mut Sheet, at: (f64, f64), mode: Mode, r: f64) {
-    let kind = match mode {
-        Mode::Free => 0,
-        Mode::Sliding => 2,
-        Mode::Fixed => 1,
-    };
-    sheet.ringed(at, kind, r, colour(mode));
 }
 
 /// The picture as plain data.
