@@ -1,9 +1,9 @@
 //! The chooser: groups, what a typed text leaves, a look at the selected offer, and the ways back; and files completed at the
 //! colon.
 
-use stickslip::step::State;
 use stickslip::record::state_digest::StateDigests;
 use stickslip::scene::Scene;
+use stickslip::step::State;
 use stickslip::teach::progress::Progress;
 use stickslip::tui::Debugger;
 use stickslip::tui::chooser_state;
