@@ -28,10 +28,9 @@ impl StateDigests {
     pub fn digest(&mut self, state: &State) -> String {
         let factored = state.major.factored.as_ref();
         let parts = (
-            self.fields.find_or(&state.u, |u| bits::digest(u)),
-            factored.map(|u| self.fields.find_or(u, |u| bits::digest(u))),
-            self.starts
-                .find_or(&state.start, |start| bits::digest(start)),
+            self.fields.find_or(&state.u, bits::digest),
+            factored.map(|u| self.fields.find_or(u, bits::digest)),
+            self.starts.find_or(&state.start, bits::digest),
         );
         let rest = State {
             u: Arc::default(),
