@@ -17,7 +17,7 @@ pub(super) struct Iterate {
     pub linearised: bool,
     /// Whether the last linearisation is at the displacements of `state`, so that monitors can be read from it.
     pub measured: bool,
-    /// Point outside the range of its law in the state that is about to be accepted.
+    /// Worst point outside the range of its law, as [`Iterate::inverted`] last found it.
     pub outside: Option<PointDeformation>,
     /// Norms of the last linearisation.
     pub norms: Norms,

@@ -21,11 +21,9 @@ impl Stepper {
         if let Some(on) = self.now.turn_to_goal(after) {
             return on;
         }
-        let deformation = self.now.source.deformation(&self.now.state.u);
-        if let Some(point) = deformation.and_then(|found| found.inverted()) {
+        if let Some(point) = self.now.inverted() {
             return self.refuse_inverted(point);
         }
-        self.now.outside = deformation.and_then(|found| found.outside);
         let verdict = self.now.source.judge(&self.now.state.at(), &after);
         if self.now.state.recovery.motion.is_some() {
             let worst = worst_of(&verdict);
@@ -70,9 +68,12 @@ impl Stepper {
 }
 
 impl Iterate {
-    /// Worst point of an inverted element of the current state. `None` if no element is inverted.
-    pub(super) fn inverted(&self) -> Option<PointDeformation> {
-        self.source.deformation(&self.state.u)?.inverted()
+    /// Worst point of an inverted element of the current state. `None` if no element is inverted. The same pass over all points
+    /// renews `outside`.
+    pub(super) fn inverted(&mut self) -> Option<PointDeformation> {
+        let found = self.source.deformation(&self.state.u)?;
+        self.outside = found.outside;
+        found.inverted()
     }
 
     /// Takes the worst point outside the range of its law in the state that is being accepted. `None` if all are inside, or if a
