@@ -39,6 +39,10 @@ impl Canvas {
 
     /// Draws every dot of a straight line whose number, from its start, is a multiple of `every`.
     pub fn dotted(&mut self, from: Dot, to: Dot, style: Style, every: usize) {
+        // Most elements of a fine mesh are smaller than a dot.
+        if from.map(f64::floor) == to.map(f64::floor) {
+            return self.dot(from, style);
+        }
         let Some((from, to)) = clip(from, to, [0.0; 2], self.size()) else {
             return;
         };

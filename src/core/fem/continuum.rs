@@ -38,7 +38,7 @@ pub trait Formulation: Sync {
         &self,
         count: usize,
         node: &dyn Fn(usize) -> ([f64; 2], [f64; 2]),
-        see: &mut dyn FnMut(PointGradient),
+        see: &mut dyn FnMut(&PointGradient<'_>),
     );
 
     /// Integration points and weights in the parent element, with the shape functions and their derivatives.
@@ -123,7 +123,7 @@ impl<const N: usize, const P: usize> Formulation for ContinuumKind<N, P> {
         &self,
         count: usize,
         node: &dyn Fn(usize) -> ([f64; 2], [f64; 2]),
-        see: &mut dyn FnMut(PointGradient),
+        see: &mut dyn FnMut(&PointGradient<'_>),
     ) {
         if count != N {
             return;
@@ -139,11 +139,13 @@ impl<const N: usize, const P: usize> Formulation for ContinuumKind<N, P> {
                 let mean = |of: &[[f64; 2]; N], k: usize| -> f64 {
                     parent.n.iter().zip(of).map(|(n, x)| n * x[k]).sum()
                 };
-                let (x, moved) = (mean(&at, 0), [mean(&u, 0), mean(&u, 1)]);
-                see(PointGradient {
+                see(&PointGradient {
                     h,
-                    hoop: if x > 0.0 { moved[0] / x } else { 0.0 },
-                    at: [x + moved[0], mean(&at, 1) + moved[1]],
+                    hoop: &|| {
+                        let x = mean(&at, 0);
+                        if x > 0.0 { mean(&u, 0) / x } else { 0.0 }
+                    },
+                    at: &|| [0, 1].map(|k| mean(&at, k) + mean(&u, k)),
                     integrates,
                 });
             }
@@ -191,14 +193,13 @@ impl Element for Malformed {
 }
 
 /// ∂u/∂X at a point of an element.
-#[derive(Debug, Clone, Copy)]
-pub struct PointGradient {
+pub struct PointGradient<'a> {
     /// H, in the plane.
     pub h: [[f64; 2]; 2],
-    /// Hoop strain u_x/X of a body of revolution; 0 on the axis.
-    pub hoop: f64,
-    /// Current position.
-    pub at: [f64; 2],
+    /// Computes the hoop strain u_x/X of a body of revolution; 0 on the axis.
+    pub hoop: &'a dyn Fn() -> f64,
+    /// Computes the current position.
+    pub at: &'a dyn Fn() -> [f64; 2],
     /// Whether the point is an integration point rather than a node.
     pub integrates: bool,
 }

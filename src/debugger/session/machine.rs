@@ -20,6 +20,7 @@ use crate::history::tree::Budget;
 use crate::history::verdicts;
 use crate::history::watches::Watches;
 use crate::record::journal::{self, Entry};
+use crate::record::state_digest::StateDigests;
 use crate::recorded::calculix::words::NO_MODES;
 use crate::{Breakpoints, Command, Frame, Log, Tree};
 use std::sync::Arc;
@@ -50,6 +51,7 @@ pub struct Session {
     watches: Watches,
     pub(super) background: Background,
     pub(super) journal: JournalWriter,
+    digests: StateDigests,
     /// The command that the worker is executing.
     pending: Option<Command>,
     /// Minor iterations solved by the current command, and increments accepted among them.
@@ -123,6 +125,7 @@ impl Session {
             watches: Watches::default(),
             background,
             journal: JournalWriter::default(),
+            digests: StateDigests::default(),
             pending: None,
             solved: 0,
             accepted: 0,
@@ -440,7 +443,7 @@ impl Session {
                 accepted: self.accepted,
                 branch,
                 cursor,
-                digest: journal::digest(&self.frame().state),
+                digest: self.digests.digest(&self.timeline.frame().state),
                 said: reply.clone(),
             };
             self.journal.done(&self.scene, entry, changes);
