@@ -473,7 +473,7 @@ impl Solver for Attached {
             (false, _) => Some(format!("the solver repeated {iterations}")),
         };
         let parts = joined(repeated.into_iter().chain(lost), "; ");
-        (!parts.is_empty()).then(|| parts)
+        (!parts.is_empty()).then_some(parts)
     }
 }
 

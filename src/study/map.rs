@@ -289,8 +289,7 @@ impl Map {
         let signs = joined(
             failed
                 .chain(jumped.map(|_| "↯ jumped on the way".to_owned()))
-                .collect::<BTreeSet<_>>()
-                .into_iter(),
+                .collect::<BTreeSet<_>>(),
             "   ",
         );
         (!signs.is_empty()).then_some(signs)

@@ -340,7 +340,7 @@ fn send_done<T>(
     let done = Message::Done {
         interrupted,
         hits,
-        remark: (!parts.is_empty()).then(|| parts),
+        remark: (!parts.is_empty()).then_some(parts),
     };
     send_last(news, done)
 }

@@ -391,5 +391,5 @@ fn interventions(view: &View) -> Option<String> {
         settings,
     ];
     let parts = joined(parts.into_iter().flatten(), "  ");
-    (!parts.is_empty()).then(|| parts)
+    (!parts.is_empty()).then_some(parts)
 }
