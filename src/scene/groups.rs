@@ -8,12 +8,12 @@ pub(crate) fn marked<'a>(count: usize, nodes: impl IntoIterator<Item = &'a usize
 }
 
 /// The groups, by the representative of each node: a node of its group with a smaller number, or itself.
-pub struct Groups(Vec<usize>);
+pub struct Connected(Vec<usize>);
 
-impl Groups {
+impl Connected {
     /// Each node by itself.
     pub fn new(nodes: usize) -> Self {
-        Groups((0..nodes).collect())
+        Connected((0..nodes).collect())
     }
 
     /// The representative of a node's group: its smallest node.

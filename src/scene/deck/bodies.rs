@@ -5,7 +5,7 @@ use crate::format::error::at;
 use crate::format::error::bail;
 use crate::format::given::Cells;
 use crate::format::spec::{BodySpec, Material, Nodes};
-use crate::groups::Groups;
+use crate::groups::Connected;
 use crate::import::element_kind;
 use std::collections::BTreeMap;
 use stickslip_core::{ElementKind, Law, Plane, Update};
@@ -68,7 +68,7 @@ impl DeckObjects<'_> {
 
     /// The continuum elements of each body, in deck order.
     fn parts(&self, section_of: &[usize]) -> BTreeMap<Part, Vec<usize>> {
-        let mut groups = Groups::new(self.deck.nodes.len());
+        let mut groups = Connected::new(self.deck.nodes.len());
         let solids = || {
             self.deck
                 .elements

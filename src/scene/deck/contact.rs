@@ -7,7 +7,7 @@ use crate::format::error::at;
 use crate::format::error::bail;
 use crate::format::given::SideSet;
 use crate::format::spec::{Nodes, SlaveSpec, SurfaceSpec};
-use crate::groups::Groups;
+use crate::groups::Connected;
 use crate::number::sig4;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use stickslip_core::Mode;
@@ -271,7 +271,7 @@ impl DeckObjects<'_> {
             let next = number.len();
             number.entry(*node).or_insert(next);
         }
-        let mut groups = Groups::new(number.len());
+        let mut groups = Connected::new(number.len());
         for side in &sides {
             side.windows(2)
                 .for_each(|pair| groups.join(number[&pair[0]], number[&pair[1]]));

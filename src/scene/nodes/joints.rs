@@ -3,7 +3,7 @@
 use super::{EntryKind, NameEntry, Names};
 use crate::format::error::{Fault, Path, at, bail, fault};
 use crate::format::spec::Nodes;
-use crate::groups::Groups;
+use crate::groups::Connected;
 use crate::number::sig4;
 use std::collections::HashSet;
 use stickslip_core::counted;
@@ -146,7 +146,7 @@ impl Names {
         if twins.is_empty() {
             return;
         }
-        let mut groups = Groups::new(self.nodes.len());
+        let mut groups = Connected::new(self.nodes.len());
         twins.iter().for_each(|&(a, b)| groups.join(a, b));
         let mut number = vec![0; self.nodes.len()];
         let mut kept = Vec::with_capacity(self.nodes.len());

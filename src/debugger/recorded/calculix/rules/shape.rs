@@ -9,7 +9,7 @@ use stickslip_exchange::inp::Deck;
 use stickslip_exchange::inp::deck::{
     Adjust, Faces, Family, Interaction, Normal, Section, Set, Step, Value,
 };
-use stickslip_scene::groups::Groups;
+use stickslip_scene::groups::Connected;
 use stickslip_scene::joined;
 
 /// Position tolerance of a tie without one, in sizes of a master face (CalculiX: 2.5 %).
@@ -617,7 +617,7 @@ fn sorted(corners: &[usize]) -> Vec<usize> {
 
 /// Connected elements: the body of each node, and the names of the bodies.
 fn bodies(deck: &Deck) -> (Vec<Option<usize>>, Vec<String>) {
-    let mut groups = Groups::new(deck.nodes.len());
+    let mut groups = Connected::new(deck.nodes.len());
     for ends in deck.elements.iter().flat_map(|e| e.nodes.windows(2)) {
         groups.join(ends[0], ends[1]);
     }
