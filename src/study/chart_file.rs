@@ -20,10 +20,10 @@ use super::read::{Vary, pairs};
 use super::reference::Reference;
 use serde::Deserialize;
 use std::path::PathBuf;
-use stickslip_scene::builtin;
 use stickslip_scene::embedded_all;
 use stickslip_scene::format::read::value;
 use stickslip_scene::{EmbeddedFile, Scene, SceneError};
+use stickslip_scene::{builtin, joined};
 
 /// A chart before it is measured.
 #[derive(Debug, Clone, PartialEq)]
@@ -173,7 +173,7 @@ impl Chart {
 fn series(along: &Vary, others: &[Vary]) -> Vec<Series> {
     let name = |set: &[(String, String)]| match set {
         [] => along.path.clone(),
-        set => assigned(set).collect::<Vec<_>>().join(", "),
+        set => joined(assigned(set), ", "),
     };
     product(others)
         .into_iter()
@@ -201,7 +201,7 @@ fn any() -> Vec<Series> {
         name: name.to_owned(),
         vary: vec![Vary {
             path: path.to_owned(),
-            values: values.iter().map(|v| v.to_string()).collect(),
+            values: values.iter().map(|word| word.to_string()).collect(),
         }],
         set: Vec::new(),
     };

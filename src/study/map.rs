@@ -20,6 +20,7 @@ use std::collections::{BTreeSet, HashMap};
 use std::fmt::Write;
 use std::sync::Arc;
 use stickslip_core::Model;
+use stickslip_scene::joined;
 
 /// Default tolerance: runs whose ends differ by more than this fraction of the largest value are on different
 /// branches.
@@ -285,12 +286,12 @@ impl Map {
             _ => None,
         });
         let jumped = cells().filter(|cell| cell.ended.jumped > 0);
-        let signs = failed
-            .chain(jumped.map(|_| "↯ jumped on the way".to_owned()))
-            .collect::<BTreeSet<_>>()
-            .into_iter()
-            .collect::<Vec<_>>()
-            .join("   ");
+        let signs = joined(
+            failed
+                .chain(jumped.map(|_| "↯ jumped on the way".to_owned()))
+                .collect::<BTreeSet<_>>(),
+            "   ",
+        );
         (!signs.is_empty()).then_some(signs)
     }
 
@@ -311,7 +312,7 @@ impl Map {
         named.sort_unstable();
         named.dedup();
         const SHOWN: usize = 4;
-        let names: Vec<String> = named.iter().take(SHOWN).map(|&k| self.name(k)).collect();
+        let names = joined(named.iter().take(SHOWN).map(|&k| self.name(k)), "; ");
         let more = match named.len().saturating_sub(SHOWN) {
             0 => String::new(),
             n => format!(" and {n} more (the table has them)"),
@@ -322,8 +323,7 @@ impl Map {
             format!(
                 "Ends are compared with those of {}{more}; wrong: a monitor differs by more than {} of the largest value \
                  of its kind.",
-                names.join("; "),
-                self.tolerance
+                names, self.tolerance
             )
         };
         vec![made, compared, origin::made_by()]
@@ -351,7 +351,7 @@ impl Map {
             "jumped",
         ];
         let heads = self.plan.columns.iter().map(String::as_str).chain(words);
-        text += &(heads.collect::<Vec<_>>().join(",") + "\n");
+        text += &(joined(heads, ",") + "\n");
         for (case, cell) in self.plan.cases.iter().zip(&self.cells) {
             let Some(cell) = cell else { continue };
             let MapRun {

@@ -2,9 +2,8 @@
 //! visible extent, and clipping.
 
 use stickslip_core::fem::lagrange;
-use stickslip_core::model::{Body, BodyKind};
 use stickslip_core::plane::minus;
-use stickslip_core::{Event, Model, SurfaceElement};
+use stickslip_core::{Body, BodyKind, Event, Model, SurfaceElement};
 
 /// A point in the scene or on the sheet.
 pub type Point = [f64; 2];

@@ -1,5 +1,6 @@
 //! The last iterations of one contact: its force in the Coulomb cone, and T_max as a map from the value used to the value found.
 
+use stickslip_core::plane::range;
 use stickslip_core::{Event, Friction, Mode};
 
 /// Maximum number of iterations in a trail.
@@ -150,9 +151,7 @@ pub fn cobweb(trail: &[TrailPoint], scale: f64) -> Cobweb {
         [[used, used], [used, found], [found, found]]
     });
     let path: Vec<[f64; 2]> = path.collect();
-    let values = || path.iter().flatten().copied();
-    let low = values().fold(f64::INFINITY, f64::min);
-    let high = values().fold(f64::NEG_INFINITY, f64::max);
+    let [low, high] = range(path.iter().flatten().copied());
     let margin = 0.06 * (high - low);
     Cobweb {
         origin,

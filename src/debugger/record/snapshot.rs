@@ -10,10 +10,9 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use stickslip_core::step::drive::drive;
-use stickslip_core::words::counted;
 use stickslip_core::{
     Event, Forced, Intervention, Mode, Model, Norms, Position, Rule, RunEnd, Solver, SolverLost,
-    State, Status, Until,
+    State, Status, Until, counted,
 };
 use stickslip_platform::disk;
 use stickslip_platform::files::{self, FileError};

@@ -28,10 +28,8 @@ use std::time::Duration;
 use stickslip_core::step::cone_solver::ConeSolver;
 use stickslip_core::{Capabilities, Intervention, Model, Solver, Stepper};
 use stickslip_platform::clock::Instant;
-use stickslip_scene::Scene;
-use stickslip_scene::gaps;
-use stickslip_scene::number::shortest;
 use stickslip_scene::solver::solver;
+use stickslip_scene::{Scene, gaps, joined, shortest};
 
 /// Maximum duration of one call of `poll`, so that the caller stays responsive.
 const SLICE: Duration = Duration::from_millis(10);
@@ -224,13 +222,14 @@ impl Session {
                     None => format!("{name} = none"),
                 });
         let finished = self.model().finished.as_ref();
-        finished
-            .map(|_| NO_MODES.to_owned())
-            .into_iter()
-            .chain(branch)
-            .chain(watches)
-            .collect::<Vec<_>>()
-            .join("   ")
+        joined(
+            finished
+                .map(|_| NO_MODES.to_owned())
+                .into_iter()
+                .chain(branch)
+                .chain(watches),
+            "   ",
+        )
     }
 
     /// Whether the worker is busy.

@@ -32,7 +32,7 @@ impl Session {
         if digest != entry.digest {
             return Err(Departure::State {
                 now: digest,
-                then: shown::cut(&entry.digest, 40).to_string(),
+                then: shown::cut(&entry.digest, 40),
             });
         }
         // An interrupted motion is replayed up to where it stopped.

@@ -13,7 +13,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
 use stickslip_debugger::history::frame;
-use stickslip_scene::number::{shortest, sig2, sig6};
+use stickslip_scene::{shortest, sig2, sig6};
 
 /// Width of the axis with its labels.
 const LABELS: u16 = 9;

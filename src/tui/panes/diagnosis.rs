@@ -321,7 +321,7 @@ fn cell(answer: &NodeAnswer, app: &App) -> [Span<'static>; 2] {
         stickslip_core::interface::problem::AssumedMode::Fixed => "X ",
     };
     let last = match mode {
-        stickslip_core::model::Mode::Free => answer.gap,
+        stickslip_core::Mode::Free => answer.gap,
         _ => answer.slip,
     };
     let numbers = [answer.f_n, answer.f_t, last].map(|value| number::fixed_width(value, 10));

@@ -11,6 +11,7 @@ use ratatui::text::{Line, Span};
 use stickslip_debugger::action::config;
 use stickslip_debugger::action::{ACTIONS, Context, Group, Keymap};
 use stickslip_manual::search::Search;
+use stickslip_scene::joined;
 
 /// The marks on the screen.
 const MARKS: &[(&str, &str)] = &[
@@ -154,12 +155,12 @@ pub fn page(width: usize, theme: &Theme, keymap: &Keymap, context: &Context) -> 
         None => Vec::new(),
     };
     let first = || ACTIONS.iter().filter(|entry| FIRST.contains(&entry.name));
-    let panes: Vec<&str> = Pane::ALL.into_iter().map(Pane::title).collect();
+    let panes = joined(Pane::ALL.into_iter().map(Pane::title), ", ");
     let groups = Group::ALL.into_iter().map(|group| {
         let entries = ACTIONS.iter().filter(|entry| entry.group == group);
         (group.title(), entries.collect::<Vec<_>>())
     });
-    let text = format!("Panes, in the order of Tab: {}.", panes.join(", "));
+    let text = format!("Panes, in the order of Tab: {panes}.");
     lines.extend(paint::wrapped(&text, width, theme.text));
     lines.push(Line::default());
     for (title, entries) in [("The first ten keys", first().collect())]
@@ -177,9 +178,9 @@ pub fn page(width: usize, theme: &Theme, keymap: &Keymap, context: &Context) -> 
                     [theme.faint; 2],
                 ),
             };
-            let keys: Vec<&str> = keymap.keys(entry).collect();
+            let keys = joined(keymap.keys(entry), " ");
             let lead = [
-                Span::styled(format!("   {:<KEYS$}", keys.join(" ")), key_style),
+                Span::styled(format!("   {keys:<KEYS$}"), key_style),
                 Span::styled(format!("{name:<NAMES$}"), style),
             ];
             lines.extend(paint::hanging(&lead, &help, room, style));

@@ -12,11 +12,12 @@ use crate::RoundOff;
 use crate::explain::conditions::{Given, conditions};
 use crate::explain::names;
 use crate::explain::outline::{self, Bounds, Point, Projection, curve, extent};
-use stickslip_core::model::{BodyKind, SolidElement};
+use stickslip_core::model::SolidElement;
 use stickslip_core::plane::distance;
-use stickslip_core::words::counted;
-use stickslip_core::{ContactRecord, Mode, Model, Outcome, Status, Stepper, SurfaceElement};
-use stickslip_scene::number::{shortest, sig4};
+use stickslip_core::{
+    Body, ContactRecord, Mode, Model, Outcome, Status, Stepper, SurfaceElement, counted,
+};
+use stickslip_scene::{shortest, sig4};
 use stickslip_study::drawn::PlotError;
 use stickslip_study::origin;
 use stickslip_study::placing::{OccupiedArea, Patch};
@@ -283,10 +284,7 @@ impl ShapeDrawing<'_> {
                 .collect();
             self.line(&points, &before);
         }
-        for body in &model.bodies {
-            let BodyKind::Solid(solid) = &body.kind else {
-                continue;
-            };
+        for solid in model.bodies.iter().filter_map(Body::solid) {
             for SolidElement { kind, nodes, .. } in &solid.elements {
                 let across = kind.faces().len() / 2;
                 let (a, b) = ((self.now)(nodes[0]), (self.now)(nodes[across]));

@@ -4,7 +4,7 @@ use super::export_state::COLUMNS;
 use crate::explain::names;
 use crate::{PointKind, Strip};
 use stickslip_core::{Mode, Model};
-use stickslip_scene::number::shortest;
+use stickslip_scene::shortest;
 use stickslip_study::drawn::PlotError;
 use stickslip_study::sheet::{Anchor, BLACK, Colour, GREY, LABEL, MARGIN, SMALL, Sheet, widest};
 
