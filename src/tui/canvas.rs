@@ -39,13 +39,13 @@ impl Canvas {
 
     /// Draws every dot of a straight line whose number, from its start, is a multiple of `every`.
     pub fn dotted(&mut self, from: Dot, to: Dot, style: Style, every: usize) {
-        // Most elements of a fine mesh are smaller than a dot.
-        if from.map(f64::floor) == to.map(f64::floor) {
-            return self.dot(from, style);
-        }
         let Some((from, to)) = clip(from, to, [0.0; 2], self.size()) else {
             return;
         };
+        // Most elements of a fine mesh are smaller than a dot.
+        if from.map(|x| x as u32) == to.map(|x| x as u32) {
+            return self.dot(from, style);
+        }
         let length = (to[0] - from[0]).abs().max((to[1] - from[1]).abs());
         // Steps of exactly one dot could skip one by round-off.
         let steps = (length + 1e-6).ceil();

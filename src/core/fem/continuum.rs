@@ -128,24 +128,25 @@ impl<const N: usize, const P: usize> Formulation for ContinuumKind<N, P> {
         if count != N {
             return;
         }
-        let (mut at, mut u) = ([[0.0; 2]; N], [[0.0; 2]; N]);
-        for (k, (at, u)) in at.iter_mut().zip(&mut u).enumerate() {
-            (*at, *u) = node(k);
-        }
+        let own: [_; N] = std::array::from_fn(|k| {
+            let ([x, y], [u, v]) = node(k);
+            [x, y, u, v]
+        });
         let points = self.rule().iter().map(|parent| (parent, true));
         let nodes = self.at_nodes().iter().map(|parent| (parent, false));
         for (parent, integrates) in points.chain(nodes) {
-            if let Some(h) = isoparametric::slope_at(parent, &at, &u) {
-                let mean = |of: &[[f64; 2]; N], k: usize| -> f64 {
-                    parent.n.iter().zip(of).map(|(n, x)| n * x[k]).sum()
+            if let Some(h) = isoparametric::slope_at(parent, &own) {
+                let mean = |k: usize| -> f64 {
+                    let shares = parent.n.iter().zip(&own);
+                    shares.map(|(n, node)| n * node[k]).sum()
                 };
                 see(&PointGradient {
                     h,
                     hoop: &|| {
-                        let x = mean(&at, 0);
-                        if x > 0.0 { mean(&u, 0) / x } else { 0.0 }
+                        let x = mean(0);
+                        if x > 0.0 { mean(2) / x } else { 0.0 }
                     },
-                    at: &|| [0, 1].map(|k| mean(&at, k) + mean(&u, k)),
+                    at: &|| [0, 1].map(|k| mean(k) + mean(2 + k)),
                     integrates,
                 });
             }

@@ -201,7 +201,7 @@ fn each_point(model: &Model, u: &[f64], mut see: impl FnMut(&SampledPoint<'_>)) 
 /// Smallest principal stretch and det F.
 fn measures(elastic: &Elastic, point: &PointGradient<'_>) -> [f64; 2] {
     let [[h11, h12], [h21, h22]] = point.h;
-    // Stretches neither overflow nor underflow when squared; `hypot` would take half of the pass.
+    // `hypot` would take most of the time, and its last digits depend on the system.
     let length = |x: f64, y: f64| (x * x + y * y).sqrt();
     let a = length(2.0 + h11 + h22, h21 - h12);
     let b = length(h11 - h22, h12 + h21);

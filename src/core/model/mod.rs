@@ -413,6 +413,7 @@ impl Model {
     }
 
     /// Reference position of a node; z is 0 in the plane.
+    #[inline]
     pub fn at_in_space(&self, node: usize) -> [f64; 3] {
         let [x, y] = self.nodes[node].at;
         let heights = self.space.as_ref().map(|space| &space.heights);
@@ -421,6 +422,7 @@ impl Model {
     }
 
     /// Current position of a node ([`Model::place`]); z is 0 in the plane.
+    #[inline]
     pub fn place_in_space(&self, u: &[f64], node: usize) -> [f64; 3] {
         let [x, y] = self.place(u, node);
         let [_, _, z] = self.at_in_space(node);
