@@ -9,10 +9,9 @@ use super::link::{Link, Start, name};
 use super::started_solver::{self, StartedSolver, meet};
 use std::sync::Arc;
 use std::sync::atomic::AtomicUsize;
-use stickslip_core::words::counted;
 use stickslip_core::{
     Capabilities, Intervention, Mode, Model, Now, Position, ReportedProblem, Solver, SolverLost,
-    State, StoredStates,
+    State, StoredStates, counted,
 };
 use stickslip_debugger::explain::names;
 use stickslip_debugger::recorded::decode::{self, RecordedStep, WireFrame};
@@ -21,7 +20,7 @@ use stickslip_debugger::recorded::orders::requests;
 use stickslip_debugger::{Fault, Log};
 use stickslip_exchange::attach::message::{self, ContactResult, EndedLevel, Hello, Id, Restore};
 use stickslip_exchange::attach::{Answer, Request};
-use stickslip_scene::Scene;
+use stickslip_scene::{Scene, joined};
 
 /// A solver in a child process.
 pub struct Attached {
@@ -473,8 +472,8 @@ impl Solver for Attached {
             (false, 0) => None,
             (false, _) => Some(format!("the solver repeated {iterations}")),
         };
-        let parts: Vec<String> = repeated.into_iter().chain(lost).collect();
-        (!parts.is_empty()).then(|| parts.join("; "))
+        let parts = joined(repeated.into_iter().chain(lost), "; ");
+        (!parts.is_empty()).then_some(parts)
     }
 }
 

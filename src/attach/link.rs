@@ -18,7 +18,7 @@ use stickslip_exchange::attach::message::{Level, Progress};
 use stickslip_exchange::attach::{Answer, Line, LineReader, MOST_BYTES, Request, Side};
 use stickslip_platform::local_socket;
 use stickslip_platform::process::{self, Guard};
-use stickslip_scene::{mesh_file, number, shown};
+use stickslip_scene::{joined, mesh_file, number, shown};
 
 /// Polling interval for interrupts.
 const LOOK: Duration = Duration::from_millis(10);
@@ -488,7 +488,7 @@ impl Link {
             Some(why.to_owned()).filter(|why| !why.is_empty()),
             last,
         ];
-        let how = parts.into_iter().flatten().collect::<Vec<_>>().join("; ");
+        let how = joined(parts.into_iter().flatten(), "; ");
         let asked = waiting.asked.clone();
         Fault::Died { how, asked }
     }

@@ -3,8 +3,11 @@
 //! Nothing is rounded, so that a trace made from the messages has the same bits.
 
 use stickslip_core::contact::record::{self};
-use stickslip_core::model::{Axis, Bond, Control, Jumps, MonitorQuantity};
-use stickslip_core::{ContactRecord, Event, Failure, Model, Norms, Outcome, State};
+use stickslip_core::model::Axis;
+use stickslip_core::{
+    Bond, ContactRecord, Control, Event, Failure, Jumps, Model, MonitorQuantity, Norms, Outcome,
+    State,
+};
 use stickslip_debugger::explain::failures;
 use stickslip_debugger::explain::names;
 use stickslip_exchange::attach::message::{
@@ -52,14 +55,14 @@ pub fn scene(model: &Model) -> Scene {
     }
 }
 
-fn node(node: &stickslip_core::model::Node) -> message::NodeMessage {
+fn node(node: &stickslip_core::Node) -> message::NodeMessage {
     message::NodeMessage {
         name: node.name.clone(),
         at: Some(node.at.into()),
     }
 }
 
-fn surface(surface: &stickslip_core::model::Surface) -> SurfaceMessage {
+fn surface(surface: &stickslip_core::Surface) -> SurfaceMessage {
     let mut nodes: Vec<usize> = Vec::new();
     for element in &surface.elements {
         match nodes.last() {
@@ -102,7 +105,7 @@ fn of_contact(model: &Model, k: usize) -> Contact {
     }
 }
 
-fn monitor(monitor: &stickslip_core::model::Monitor) -> Monitor {
+fn monitor(monitor: &stickslip_core::Monitor) -> Monitor {
     let kind = match &monitor.of {
         MonitorQuantity::Contact {
             axis: Axis::X | Axis::Y,

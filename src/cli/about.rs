@@ -11,7 +11,7 @@ use stickslip_debugger::action::config;
 use stickslip_debugger::record::journal;
 use stickslip_platform::system;
 use stickslip_platform::terminal::{self, Answers};
-use stickslip_scene::memory;
+use stickslip_scene::{joined, memory};
 use stickslip_study::origin;
 
 pub fn main(verbose: bool) -> Result<Exit, Error> {
@@ -49,11 +49,12 @@ fn features() -> String {
         ("fclib", cfg!(feature = "fclib")),
     ];
     let with = |wanted: bool| {
-        all.iter()
-            .filter(|(_, has)| *has == wanted)
-            .map(|(name, _)| *name)
-            .collect::<Vec<_>>()
-            .join(", ")
+        joined(
+            all.iter()
+                .filter(|(_, has)| *has == wanted)
+                .map(|(name, _)| *name),
+            ", ",
+        )
     };
     match (with(true), with(false)) {
         (all, none) if none.is_empty() => all,
@@ -192,7 +193,7 @@ fn words(answers: &Answers) -> String {
         Some(other) => {
             let words =
                 |(what, there, here)| format!("{what} take {there} columns instead of {here}");
-            other.into_iter().map(words).collect::<Vec<_>>().join(", ")
+            joined(other.into_iter().map(words), ", ")
         }
     };
     let kind = answers.kind.iter().map(u16::to_string);
@@ -200,7 +201,7 @@ fn words(answers: &Answers) -> String {
         "mouse (SGR): {}; clipboard (OSC 52): {clipboard}; synchronized updates: {}; widths: {widths}; type: {}",
         known(answers.mouse()),
         known(answers.in_one_go()),
-        kind.collect::<Vec<_>>().join(";")
+        joined(kind, ";")
     )
 }
 

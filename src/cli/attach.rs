@@ -6,7 +6,7 @@ use super::front;
 use super::solver::SolverArgs;
 use std::path::PathBuf;
 use stickslip_attach::{C, FORTRAN, PYTHON, SCHEMA, check};
-use stickslip_core::words::counted;
+use stickslip_core::counted;
 use stickslip_debugger::{JournalTarget, Session};
 
 #[derive(Debug, clap::Args)]

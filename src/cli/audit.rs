@@ -11,17 +11,15 @@ use super::solver::{SolverArgs, step_to_end};
 use std::path::Path;
 use std::sync::Arc;
 use stickslip_attach::Attached;
-use stickslip_core::words::counted;
-use stickslip_core::{JudgedLaw, Model, Outcome, RunEnd, Solver};
+use stickslip_core::{JudgedLaw, Model, Outcome, PointDeformation, RunEnd, Solver, counted};
 use stickslip_debugger::Snapshot;
-use stickslip_debugger::explain::audit::{Audit, PenetratingMaster, StretchFinding, WorstFinding};
+use stickslip_debugger::explain::audit::{Audit, PenetratingMaster, WorstFinding};
 use stickslip_debugger::explain::judged;
 use stickslip_debugger::explain::names;
 use stickslip_debugger::explain::report;
 use stickslip_debugger::explain::strain;
-use stickslip_scene::number::{shortest, sig2, sig4};
 use stickslip_scene::solver::solver;
-use stickslip_scene::{FileKind, Scene};
+use stickslip_scene::{FileKind, Scene, shortest, sig2, sig4};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -101,13 +99,13 @@ const INTERRUPTED: &str = "interrupted";
 fn one(course: &Course, says: bool, interrupt: &Interrupt) -> Result<HistoryRecord, Error> {
     let mut stepper = solver(Arc::new(course.scene.model.clone()));
     let mut audit = Audit::default();
-    let end = course.go(&mut stepper, interrupt, &mut |stepper| {
+    let end = course.go(&mut stepper, interrupt, |stepper| {
         let failed = matches!(stepper.event().outcome, Outcome::Failed(_));
         if !failed || course.steps.is_some() {
             audit.take(stepper);
         }
     })?;
-    history(&course.scene, &audit, end, &stepper, says)?
+    history(&course.scene, &audit, end, &stepper, says)
 }
 
 /// Audits the history of an attached solver.
@@ -120,32 +118,30 @@ fn attached(
     let mut audit = Audit::default();
     let see = &mut |solver: &dyn Solver| audit.take_reported(solver);
     let end = step_to_end(solver, Some(interrupt), see)?;
-    let Ok(history) = history(scene, &audit, end, solver, says)?;
-    Ok(history)
+    history(scene, &audit, end, solver, says)
 }
 
 /// The report of an audited history.
-fn history<E>(
+fn history<S>(
     scene: &Scene,
     audit: &Audit,
-    end: RunEnd<E>,
+    end: RunEnd<S>,
     solver: &dyn Solver,
     says: bool,
-) -> Result<Result<HistoryRecord, E>, Error> {
+) -> Result<HistoryRecord, Error> {
     let (name, model) = (&scene.name, &scene.model);
     let mut history = record(name, model, audit);
     let failed = match end {
-        RunEnd::Stopped(error) => return Ok(Err(error)),
         RunEnd::Interrupted => {
             notify(&format!("{name}: interrupted"));
             history.outcome = INTERRUPTED;
-            return Ok(Ok(history));
+            return Ok(history);
         }
         RunEnd::Failed(failure) => {
             let event = solver.event();
             Some((event.position, event.load_factor, failure))
         }
-        RunEnd::Finished | RunEnd::Spent => None,
+        RunEnd::Finished | RunEnd::Spent | RunEnd::Stopped(_) => None,
     };
     if says {
         say(&table(name, model, audit))?;
@@ -156,13 +152,13 @@ fn history<E>(
         history.outcome = "failed";
         history.failure = Some(FailureRecord::new(model, position, load, &failure));
     }
-    Ok(Ok(history))
+    Ok(history)
 }
 
 /// The report as data.
 fn record(name: &str, model: &Model, audit: &Audit) -> HistoryRecord {
     let finding = |found: &WorstFinding| finding_record(model, found);
-    let stretch = |found: &StretchFinding| stretch_record(model, found);
+    let stretch = |found: &WorstFinding<PointDeformation>| stretch_record(model, found);
     HistoryRecord {
         name: name.to_owned(),
         outcome: "finished",
@@ -197,25 +193,27 @@ fn finding_record(model: &Model, found: &WorstFinding) -> FindingRecord {
     }
 }
 
-fn stretch_record(model: &Model, found: &StretchFinding) -> StretchRecord {
-    let body = model.bodies.get(found.point.body);
+fn stretch_record(model: &Model, found: &WorstFinding<PointDeformation>) -> StretchRecord {
+    let point = &found.finding;
+    let body = model.bodies.get(point.body);
     StretchRecord {
         increment: found.increment,
         load: found.load_factor,
         body: body.map(|body| body.name.clone()).unwrap_or_default(),
-        element: found.point.element + 1,
-        stretch: found.point.stretch,
-        determinant: found.point.determinant,
+        element: point.element + 1,
+        stretch: point.stretch,
+        determinant: point.determinant,
     }
 }
 
-fn inside_record(model: &Model, found: &PenetratingMaster) -> InsideRecord {
+fn inside_record(model: &Model, found: &WorstFinding<PenetratingMaster>) -> InsideRecord {
+    let PenetratingMaster { node, body, depth } = found.finding;
     InsideRecord {
         increment: found.increment,
         load: found.load_factor,
-        node: model.nodes[found.node].name.clone(),
-        body: model.bodies[found.body].name.clone(),
-        depth: found.depth,
+        node: model.nodes[node].name.clone(),
+        body: model.bodies[body].name.clone(),
+        depth,
     }
 }
 
@@ -241,12 +239,11 @@ fn table(name: &str, model: &Model, audit: &Audit) -> String {
     }
     if let Some(found) = &audit.stretch {
         text += &format!(
-            "  {:<11}  {:<8}            increment {} (load {}), {}\n",
+            "  {:<11}  {:<8}            {}, {}\n",
             "stretch",
-            sig4(found.point.stretch),
-            found.increment,
-            shortest(found.load_factor),
-            strain::element(model, &found.point)
+            sig4(found.finding.stretch),
+            place(found),
+            strain::element(model, &found.finding)
         );
     }
     if *marked > 0 {
@@ -275,26 +272,25 @@ fn table(name: &str, model: &Model, audit: &Audit) -> String {
     }
     if let Some(found) = &audit.outside {
         text += &format!(
-            "  also: from increment {} (load {}) on: {}\n",
-            found.increment,
-            shortest(found.load_factor),
-            strain::left(model, &found.point)
+            "  also: from {} on: {}\n",
+            place(found),
+            strain::left(model, &found.finding)
         );
     }
-    if let Some(inside) = &audit.inside {
+    if let Some(found) = &audit.inside {
+        let PenetratingMaster { node, body, depth } = found.finding;
         text += &format!(
-            "  also: increment {} (load {}): master node {} penetrates {} by {}; contact tests only slave nodes\n",
-            inside.increment,
-            shortest(inside.load_factor),
-            model.nodes[inside.node].name,
-            model.bodies[inside.body].name,
-            sig4(inside.depth)
+            "  also: {}: master node {} penetrates {} by {}; contact tests only slave nodes\n",
+            place(found),
+            model.nodes[node].name,
+            model.bodies[body].name,
+            sig4(depth)
         );
     }
     text
 }
 
-fn place(found: &WorstFinding) -> String {
+fn place<T>(found: &WorstFinding<T>) -> String {
     let load = shortest(found.load_factor);
     format!("increment {} (load {load})", found.increment)
 }

@@ -3,8 +3,7 @@
 use super::base::{Error, Exit, notify};
 use super::interrupt::Interrupt;
 use super::outputs::{OutputArgs, Outputs};
-use stickslip_scene::number::{sig2, sig6};
-use stickslip_scene::shown::aligned;
+use stickslip_scene::{aligned, sig2, sig6};
 use stickslip_study::Watch;
 use stickslip_study::benchmarks::{Assessment, Benchmark, Benchmarks, ComparedBenchmark, table};
 

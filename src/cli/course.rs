@@ -2,9 +2,8 @@
 
 use super::base::{Error, usage};
 use super::interrupt::Interrupt;
-use std::ops::ControlFlow;
 use stickslip_core::{RunEnd, Stepper, Until};
-use stickslip_debugger::record::snapshot::AppliedIntervention;
+use stickslip_debugger::record::snapshot::{AppliedIntervention, repeat};
 use stickslip_debugger::{Snapshot, SnapshotError};
 use stickslip_scene::{IN_SPACE, Scene};
 
@@ -17,9 +16,6 @@ pub struct Course {
     /// Minor iterations of a snapshot; `None` continues to the end of the history, or to the first failure.
     pub steps: Option<u64>,
 }
-
-/// How a course ended; an error ends it with [`RunEnd::Stopped`].
-pub type CourseEnd = RunEnd<Error>;
 
 impl Course {
     /// The whole history of a scene.
@@ -53,24 +49,13 @@ impl Course {
     /// Runs the course with a stepper at the start; calls `see` after every minor iteration.
     ///
     /// # Errors
-    /// If an intervention before the first minor iteration is not possible.
+    /// If an intervention is not possible.
     pub fn go(
         &self,
         stepper: &mut Stepper,
         interrupt: &Interrupt,
-        see: &mut dyn FnMut(&mut Stepper),
-    ) -> Result<CourseEnd, Error> {
-        let name = &self.scene.name;
-        let mut applied = self.applied.iter().peekable();
-        let mut intervene = |stepper: &mut Stepper, done: u64| {
-            while let Some(next) = applied.next_if(|a| a.step == done) {
-                stepper
-                    .intervene(&next.intervention)
-                    .map_err(|e| usage!("{name}: after step {done}: {e}"))?;
-            }
-            Ok(())
-        };
-        intervene(stepper, 0)?;
+        see: impl FnMut(&mut Stepper),
+    ) -> Result<RunEnd<String>, Error> {
         let has_arrived = || interrupt.has_arrived();
         let until = Until::end().interrupted_by(&has_arrived);
         // A snapshot continues after a failure if its user did.
@@ -78,14 +63,9 @@ impl Course {
             Some(steps) => until.minors(steps).past_failures(),
             None => until,
         };
-        let mut done = 0;
-        Ok(stepper.drive(until, |stepper| {
-            done += 1;
-            see(stepper);
-            match intervene(stepper, done) {
-                Ok(()) => ControlFlow::Continue(()),
-                Err(error) => ControlFlow::Break(error),
-            }
-        }))
+        match repeat(stepper, &self.applied, until, see).map_err(Error::usage)? {
+            RunEnd::Stopped(why) => Err(usage!("{}: {why}", self.scene.name)),
+            end => Ok(end),
+        }
     }
 }

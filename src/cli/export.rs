@@ -10,7 +10,7 @@ use super::solver::{SolverArgs, session_of, step_to_end};
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use stickslip_core::{Failure, Model, Position, RunEnd, Solver, State, Status, Stepper};
+use stickslip_core::{Model, Position, RunEnd, Solver, State, Status, Stepper};
 use stickslip_debugger::explain::{failures, names, report};
 use stickslip_debugger::record::export::export_state::{ExportState, PicturePart, PictureRequest};
 use stickslip_debugger::record::export::run_history::RunHistory;
@@ -359,12 +359,6 @@ fn open(args: &Args) -> Result<Course, Error> {
     }
 }
 
-/// How a run ended.
-enum RunStop {
-    There(String),
-    Not(Exit),
-}
-
 /// The files' contents, or the exit code if there are none.
 fn state(
     args: &Args,
@@ -380,13 +374,12 @@ fn state(
     // The scene file itself needs no solve.
     let solves = kind.extension != "ron" || args.frozen;
     let ended = if solves {
-        drive(&course, args.at, &mut stepper, &mut seen, interrupt)?
+        match drive(&course, args.at, &mut stepper, &mut seen, interrupt)? {
+            Ok(ended) => ended,
+            Err(exit) => return Ok(Err(exit)),
+        }
     } else {
-        RunStop::There(String::new())
-    };
-    let ended = match ended {
-        RunStop::There(ended) => ended,
-        RunStop::Not(exit) => return Ok(Err(exit)),
+        String::new()
     };
     let event = seen.has_started().then(|| stepper.event().clone());
     let state = stepper.state().clone();
@@ -418,46 +411,37 @@ fn origin(course: &Course, at: Position, state: &State) -> Origin {
     origin
 }
 
-/// Runs to the requested state.
+/// Runs to the requested state; returns the failure that ended the run, if any, or the exit code if there is no such state.
 fn drive(
     course: &Course,
     at: Option<RunPosition>,
     stepper: &mut Stepper,
     seen: &mut RunHistory<'_>,
     interrupt: &Interrupt,
-) -> Result<RunStop, Error> {
+) -> Result<Result<String, Exit>, Error> {
     let (scene, name) = (&course.scene, &course.scene.name);
     if let Some(at) = at {
         let found = seek(stepper, at, interrupt, &mut |stepper| seen.add(stepper));
         return Ok(match found {
-            Ok(_) => RunStop::There(String::new()),
-            Err(missed) => RunStop::Not(notify_missed(scene, stepper, at, missed)),
+            Ok(_) => Ok(String::new()),
+            Err(missed) => Err(notify_missed(scene, stepper, at, missed)),
         });
     }
-    let end = course.go(stepper, interrupt, &mut |stepper| seen.add(stepper))?;
+    let end = course.go(stepper, interrupt, |stepper| seen.add(stepper))?;
     Ok(match end {
-        RunEnd::Stopped(error) => return Err(error),
         RunEnd::Interrupted => {
             notify(&format!("{name}: interrupted"));
-            RunStop::Not(Exit::Interrupted)
+            Err(Exit::Interrupted)
         }
-        RunEnd::Finished | RunEnd::Spent => match &stepper.state().status {
-            Status::Failed(failure) => {
-                RunStop::There(failed(scene, stepper, &failure.clone(), false))
-            }
-            _ => RunStop::There(String::new()),
-        },
-        RunEnd::Failed(failure) => RunStop::There(failed(scene, stepper, &failure, true)),
+        RunEnd::Failed(failure) => {
+            let words = failures::describe(&scene.model, &failure);
+            let at = names::position(stepper.event().position);
+            notify(&format!("{name}: {at}: {words}; exporting this state"));
+            Ok(words)
+        }
+        _ => Ok(match &stepper.state().status {
+            Status::Failed(failure) => failures::describe(&scene.model, failure),
+            _ => String::new(),
+        }),
     })
-}
-
-/// The failure of the last minor iteration in words; printed as well if requested.
-fn failed(scene: &Scene, stepper: &Stepper, failure: &Failure, prints: bool) -> String {
-    let words = failures::describe(&scene.model, failure);
-    if prints {
-        let at = names::position(stepper.event().position);
-        let name = &scene.name;
-        notify(&format!("{name}: {at}: {words}; exporting this state"));
-    }
-    words
 }

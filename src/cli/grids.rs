@@ -2,8 +2,7 @@
 
 use super::base::Error;
 use std::path::{Path, PathBuf};
-use stickslip_core::words::counted;
-use stickslip_core::{Event, Outcome, State, Stepper};
+use stickslip_core::{Event, Outcome, State, Stepper, counted};
 use stickslip_debugger::record::export::grid::grid;
 use stickslip_exchange::vtu;
 use stickslip_platform::files::{self, FileError, Output};

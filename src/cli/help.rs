@@ -7,6 +7,7 @@ use std::process::Stdio;
 use std::sync::Arc;
 use stickslip_manual::{self as manual, Page, render};
 use stickslip_platform::{system, terminal};
+use stickslip_scene::joined;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -97,19 +98,19 @@ pub fn commands(mut program: clap::Command) -> String {
 /// An argument as it is typed.
 fn written(argument: &clap::Arg) -> String {
     let takes = argument.get_action().takes_values();
-    let values: Vec<&str> = argument
-        .get_value_names()
-        .unwrap_or_default()
-        .iter()
-        .filter(|_| takes)
-        .map(|name| name.as_str())
-        .collect();
+    let values = joined(
+        argument
+            .get_value_names()
+            .unwrap_or_default()
+            .iter()
+            .filter(|_| takes)
+            .map(clap::builder::Str::as_str),
+        " ",
+    );
     let short = argument.get_short().map(|short| format!("-{short}"));
     let long = argument.get_long().map(|long| format!("--{long}"));
-    let flags: Vec<String> = short.into_iter().chain(long).collect();
-    format!("{} {}", flags.join(", "), values.join(" "))
-        .trim()
-        .to_owned()
+    let flags = joined(short.into_iter().chain(long), ", ");
+    format!("{flags} {values}").trim().to_owned()
 }
 
 /// Shows a page, through a pager on a terminal, otherwise as plain text.

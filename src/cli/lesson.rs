@@ -7,7 +7,7 @@ use super::front;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use stickslip_core::words::counted;
+use stickslip_core::counted;
 use stickslip_debugger::Lesson;
 use stickslip_debugger::teach::play::play;
 use stickslip_debugger::teach::progress::{self, Progress, ProgressError};

@@ -8,8 +8,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use stickslip_core::strategy::method;
 use stickslip_core::{BoundUpdate, Strategy};
-use stickslip_scene::builtin;
-use stickslip_scene::shown::aligned;
+use stickslip_scene::{aligned, builtin, joined};
 use stickslip_study::map::{self, Map, MapCell};
 use stickslip_study::plan::{MOST_CASES, product};
 use stickslip_study::random::{NODES, Population};
@@ -238,9 +237,9 @@ fn variants(args: &Args) -> Result<Vec<Variant>, Error> {
     Ok(product(&vary)
         .into_iter()
         .map(|varied| {
-            let values: Vec<&str> = varied.iter().map(|(_, value)| value.as_str()).collect();
+            let values = joined(varied.iter().map(|(_, value)| value), " ");
             Variant {
-                name: values.join(" "),
+                name: values,
                 settings: [args.set.set.clone(), varied].concat(),
             }
         })
@@ -311,7 +310,7 @@ fn survey_lines(survey: &Survey) -> Vec<String> {
         ["strategy"]
             .iter()
             .chain(&heads)
-            .map(|h| h.to_string())
+            .map(|word| word.to_string())
             .collect(),
     ];
     for (v, variant) in survey.variants.iter().enumerate() {

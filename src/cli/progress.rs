@@ -2,8 +2,7 @@
 
 use std::io::{self, IsTerminal, Write};
 use std::time::{Duration, Instant};
-use stickslip_core::words::counted;
-use stickslip_core::{Event, Model, State};
+use stickslip_core::{Event, Model, State, counted};
 use stickslip_debugger::explain::names;
 
 /// Interval between two progress lines.

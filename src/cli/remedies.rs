@@ -12,8 +12,7 @@ use stickslip_debugger::explain::report;
 use stickslip_debugger::explain::{attached, failures, page};
 use stickslip_debugger::history::rounds::{self, CycleWatch};
 use stickslip_debugger::{DiagnosisPage, Examination, RemedyTrial, ReportedIterations, Strip};
-use stickslip_scene::Scene;
-use stickslip_scene::shown::aligned;
+use stickslip_scene::{Scene, aligned};
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\

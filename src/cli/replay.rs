@@ -8,7 +8,7 @@ use super::sink::Sink;
 use super::solver::SolverArgs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
-use stickslip_core::words::counted;
+use stickslip_core::counted;
 use stickslip_debugger::record::differences::{Difference, Differences, TOLERANCE, compare_within};
 use stickslip_debugger::{Snapshot, SnapshotError};
 use stickslip_platform::files::finish_all;

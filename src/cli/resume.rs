@@ -5,7 +5,7 @@ use super::debugger::{DEBUGGER, needs_terminal};
 use super::front;
 use super::solver::{SolverArgs, session_of};
 use std::path::PathBuf;
-use stickslip_core::words::counted;
+use stickslip_core::counted;
 use stickslip_debugger::record::journal::{self, Journal, JournalError, Record};
 
 #[derive(Debug, clap::Args)]

@@ -9,22 +9,16 @@ use super::run_outputs::{RunOutputArgs, RunOutputs};
 use super::solver::{Subject, SubjectArgs};
 use super::tally::{MOST_STRETCHES, Stretches, Tally};
 use std::ops::ControlFlow;
-use stickslip_core::model::{Control, Jumps, Touch};
 use stickslip_core::step::drive::drive;
-use stickslip_core::words::counted;
-use stickslip_core::{Failure, RunEnd, Solver, SolverLost, Until};
+use stickslip_core::{Control, Failure, Jumps, RunEnd, Solver, SolverLost, Touch, Until, counted};
 use stickslip_debugger::Snapshot;
 use stickslip_debugger::explain::names;
 use stickslip_debugger::explain::page;
 use stickslip_debugger::explain::report;
 use stickslip_debugger::explain::touch::TouchWatch;
 use stickslip_platform::files::Output;
-use stickslip_scene::Scene;
-use stickslip_scene::gaps;
-use stickslip_scene::number::{shortest, sig4, sig6};
-use stickslip_scene::shown;
-use stickslip_scene::shown::first_of;
 use stickslip_scene::solver::solver;
+use stickslip_scene::{Scene, first_of, gaps, shortest, shown, sig4, sig6};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {

@@ -3,7 +3,7 @@
 use super::base::{Error, Exit, notify, say, usage};
 use super::front::{self, MAIN_SCREENS, MainScreen, SIZES};
 use std::path::PathBuf;
-use stickslip_core::words::counted;
+use stickslip_core::counted;
 use stickslip_debugger::Colours;
 use stickslip_platform::files;
 use stickslip_study::pen;

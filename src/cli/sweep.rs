@@ -4,6 +4,7 @@ use super::base::{Error, Exit, notify, quoted, usage};
 use super::interrupt::Interrupt;
 use super::outputs::{OutputArgs, Outputs};
 use std::path::PathBuf;
+use stickslip_scene::joined;
 use stickslip_study::Watch;
 use stickslip_study::drawn::PlotError;
 use stickslip_study::log::{LogError, Outcome};
@@ -160,11 +161,10 @@ fn count_done<T: Outcome>(results: &[Option<T>]) -> usize {
 /// Reports other machines that computed results, since last digits can differ between machines and tables name only this one.
 fn report_machines<T: Outcome>(store: &Store<T>) {
     let here = origin::processor();
-    let others: Vec<&str> = store.machines().filter(|other| *other != here).collect();
+    let others = joined(store.machines().filter(|other| *other != here), "; ");
     if !others.is_empty() {
         notify(&format!(
-            "computed on {}, merged on {here}, which tables and pictures name; last digits may differ",
-            others.join("; ")
+            "computed on {others}, merged on {here}, which tables and pictures name; last digits may differ"
         ));
     }
 }

@@ -6,9 +6,8 @@ use super::records::{FallbackRecord, MonitorRecord, MotionRecord, SlaveRecord, S
 use super::run_outputs::{RunOutputs, first_closed, send};
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
-use stickslip_core::words::counted;
 use stickslip_core::{
-    ContactRecord, Event, Fallback, MotionEvent, Norms, Outcome, Solver, Stability,
+    ContactRecord, Event, Fallback, MotionEvent, Norms, Outcome, Solver, Stability, counted,
 };
 use stickslip_debugger::Strip;
 use stickslip_debugger::explain::accuracy;
@@ -19,9 +18,7 @@ use stickslip_debugger::explain::report;
 use stickslip_debugger::explain::touch::TouchWatch;
 use stickslip_debugger::history::rounds::{self, CycleWatch};
 use stickslip_debugger::record::table;
-use stickslip_scene::Scene;
-use stickslip_scene::number::{shortest, sig6};
-use stickslip_scene::shown::aligned;
+use stickslip_scene::{Scene, aligned, joined, shortest, sig6};
 
 /// Warnings that are printed individually; others are only counted.
 const MOST_WARNINGS: u32 = 10;
@@ -395,13 +392,13 @@ impl<'a> Tally<'a> {
             self.messages.note(line);
         }
         if self.count_notes() > LEAST_SUMMARY {
-            let kinds: Vec<String> = self
-                .recoveries
-                .iter()
-                .map(|(kind, (count, seen))| format!("{kind} {count} × ({})", within(seen)))
-                .collect();
-            self.messages
-                .note(format!("in total: {}", kinds.join(", ")));
+            let kinds = joined(
+                self.recoveries
+                    .iter()
+                    .map(|(kind, (count, seen))| format!("{kind} {count} × ({})", within(seen))),
+                ", ",
+            );
+            self.messages.note(format!("in total: {kinds}"));
         }
     }
 
@@ -476,16 +473,17 @@ impl Stretches {
         if self.0.is_empty() {
             return None;
         }
-        let first: Vec<String> = self
-            .0
-            .iter()
-            .take(MOST_STRETCHES)
-            .map(|(load, stability)| format!("{stability} from load {}", shortest(*load)))
-            .collect();
+        let first = joined(
+            self.0
+                .iter()
+                .take(MOST_STRETCHES)
+                .map(|(load, stability)| format!("{stability} from load {}", shortest(*load))),
+            ", ",
+        );
         let more = match self.0.len().saturating_sub(MOST_STRETCHES) {
             0 => String::new(),
             more => format!(", and {}; --csv lists all", counted(more, "more change")),
         };
-        Some(format!("stability: {}{more}", first.join(", ")))
+        Some(format!("stability: {first}{more}"))
     }
 }

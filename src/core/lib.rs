@@ -127,7 +127,11 @@ pub use linear::norms::Norms;
 pub use linear::singular::{RigidMotion, Singular};
 pub use linear::source::{LinearisationPoint, SolveResult, Source, Work};
 pub use linear::stability::Stability;
-pub use model::{BoundUpdate, Friction, Mode, Model, RunFinding, Settings, Strategy};
+pub use model::{
+    Body, BodyKind, Bond, BoundUpdate, Component, Contact, Control, Dofs, Elastic, ElementKind,
+    Friction, InitialGaps, InitialState, Jumps, Law, Mode, Model, Monitor, MonitorQuantity, Node,
+    Plane, RunFinding, SearchMode, Settings, Solid, Strategy, Surface, Touch, Update,
+};
 pub use step::drive::{RunEnd, Until};
 pub use step::event::{MotionEvent, Position};
 pub use step::intervene::{Intervention, Refusal};
@@ -145,3 +149,4 @@ pub use step::watch::StabilityLoss;
 pub use step::{Event, Failure, Outcome, Solver, State, Status, Stepper};
 pub use stickslip_linalg as linalg;
 pub use stickslip_linalg::executor;
+pub use words::counted;

@@ -35,6 +35,22 @@ pub fn max_abs(values: impl IntoIterator<Item: Borrow<f64>>) -> f64 {
         .fold(0.0, |most: f64, x| most.max(x.borrow().abs()))
 }
 
+/// The smallest and the largest of some numbers; ∞ and -∞ for none.
+pub fn range(values: impl IntoIterator<Item = f64>) -> [f64; 2] {
+    let none = [f64::INFINITY, f64::NEG_INFINITY];
+    values
+        .into_iter()
+        .fold(none, |[least, most], x| [least.min(x), most.max(x)])
+}
+
+/// The distance of a point from the segment from a to b.
+pub fn distance_to_segment(point: [f64; 2], a: [f64; 2], b: [f64; 2]) -> f64 {
+    let (along, to) = (minus(b, a), minus(point, a));
+    let part = dot(to, along) / dot(along, along).max(f64::MIN_POSITIVE);
+    let part = part.clamp(0.0, 1.0);
+    length(minus(to, along.map(|x| part * x)))
+}
+
 /// The distance of two points.
 pub fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])

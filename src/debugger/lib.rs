@@ -15,6 +15,7 @@
 pub mod action;
 pub mod explain;
 pub mod history;
+mod memo;
 pub mod record;
 pub mod recorded;
 pub mod session;

@@ -96,7 +96,7 @@ pub struct NoPage {
 pub fn page(topic: &str) -> Result<&'static Page, NoPage> {
     let found = PAGES.iter().find(|page| page.topic == topic);
     found.ok_or_else(|| NoPage {
-        topic: stickslip_scene::shown::cut(topic, 40).to_string(),
+        topic: stickslip_scene::shown::cut(topic, 40),
         near: did_you_mean(topic, PAGES.iter().map(|page| page.topic)),
     })
 }

@@ -42,7 +42,7 @@ impl Output {
                 to: OutputTarget::Direct(BufWriter::new(open)),
             });
         }
-        if found.as_ref().is_some_and(|found| found.is_dir()) {
+        if found.as_ref().is_some_and(std::fs::Metadata::is_dir) {
             return Err(failed(io::Error::other("is a directory")));
         }
         // A dangling link has no metadata, but must not be replaced without `overwrite` either.

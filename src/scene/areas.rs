@@ -14,7 +14,7 @@
 
 use std::collections::HashMap;
 use stickslip_core::fem::lagrange::{MAX_NODES, gauss, shape};
-use stickslip_core::model::{Body, BodyKind, Elastic, Node, Solid};
+use stickslip_core::{Body, BodyKind, Elastic, Node, Solid};
 
 /// Fractions of a side's area below this are round-off.
 const NONE: f64 = 1e-9;

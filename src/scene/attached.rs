@@ -12,11 +12,11 @@ use crate::format::error::{Fault, at, fault};
 use crate::format::spec::History;
 use crate::shown;
 use std::collections::{HashMap, HashSet};
-use stickslip_core::model::{
-    Body, BodyKind, Bond, Contact, Control, Form, Jumps, Linear, Monitor, MonitorQuantity, Node,
-    ReportedKind, Surface,
+use stickslip_core::model::{Form, Linear, ReportedKind};
+use stickslip_core::{
+    Body, BodyKind, Bond, Contact, Control, Friction, Jumps, Model, Monitor, MonitorQuantity, Node,
+    Surface,
 };
-use stickslip_core::{Friction, Model};
 use stickslip_exchange::attach::Answer;
 use stickslip_exchange::attach::message::{self, Scene};
 

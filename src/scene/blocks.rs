@@ -10,7 +10,7 @@ use super::geometry;
 use super::limits;
 use crate::format::error::{AtPath, Fault, Path, bail, fault};
 use crate::format::spec::{BlockPosition, Point, Side, Sides};
-use stickslip_core::model::ElementKind;
+use stickslip_core::ElementKind;
 
 /// Edges of a block in walking order.
 pub(crate) const EDGES: [&str; 4] = ["bottom", "right", "top", "left"];

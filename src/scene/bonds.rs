@@ -3,11 +3,10 @@
 use super::Scene;
 use crate::format::contact_law::ContactLaw;
 use crate::format::spec::SlaveSpec;
-use crate::number::sig4;
+use crate::gaps::from_to;
+use crate::joined;
 use std::collections::HashSet;
-use stickslip_core::Model;
-use stickslip_core::model::{Contact, Surface};
-use stickslip_core::words::counted;
+use stickslip_core::{Contact, Model, Surface, counted, plane};
 
 /// One line per contact law other than hard contact that a slave node has; empty without any.
 pub fn words(scene: &Scene) -> Vec<String> {
@@ -69,15 +68,17 @@ fn kinked(model: &Model) -> Option<String> {
     let kinks = |(k, surface): &(usize, &Surface)| {
         !surface.rigid && surface.smooth.is_empty() && surface.elements.len() > 1 && touched(*k)
     };
-    let named: Vec<&str> = model
-        .surfaces
-        .iter()
-        .enumerate()
-        .filter(kinks)
-        .map(|(_, surface)| surface.name.as_str())
-        .collect();
+    let named = joined(
+        model
+            .surfaces
+            .iter()
+            .enumerate()
+            .filter(kinks)
+            .map(|(_, surface)| surface.name.as_str()),
+        ", ",
+    );
     let why = "may have kinks when they deform, where a node inside may hop between two elements; use smooth: true";
-    (!named.is_empty()).then(|| format!("surfaces {}: {why}", named.join(", ")))
+    (!named.is_empty()).then(|| format!("surfaces {named}: {why}"))
 }
 
 /// Nodes listed with a penalty that are not slave nodes, for example on the axis of bodies whose elements have midside nodes.
@@ -91,30 +92,27 @@ fn left_out(scene: &Scene) -> Option<String> {
     let penalty =
         |group: &SlaveSpec| group.by.is_node() && matches!(group.law, ContactLaw::Penalty { .. });
     let mut listed = HashSet::new();
-    let named: Vec<String> = scene
-        .spec
-        .slaves
-        .iter()
-        .filter(|group| penalty(group))
-        .flat_map(|group| &group.nodes)
-        .filter_map(|name| scene.names().nodes(name).ok())
-        .flatten()
-        .filter(|node| !slaves.contains(node) && listed.insert(*node))
-        .map(|node| scene.model.nodes[node].name.clone())
-        .collect();
+    let named = joined(
+        scene
+            .spec
+            .slaves
+            .iter()
+            .filter(|group| penalty(group))
+            .flat_map(|group| &group.nodes)
+            .filter_map(|name| scene.names().nodes(name).ok())
+            .flatten()
+            .filter(|node| !slaves.contains(node) && listed.insert(*node))
+            .map(|node| scene.model.nodes[node].name.clone()),
+        ", ",
+    );
     let why = "left out of the penalty, without contact force, because they have no area (A = 0) or cannot move";
-    (!named.is_empty()).then(|| format!("{why}: {}", named.join(", ")))
+    (!named.is_empty()).then(|| format!("{why}: {named}"))
 }
 
 /// The smallest and the largest value.
 fn range(values: &[f64]) -> String {
-    let least = values.iter().copied().fold(f64::INFINITY, f64::min);
-    let largest = values.iter().copied().fold(0.0, f64::max);
-    if least == largest {
-        sig4(least)
-    } else {
-        format!("{} to {}", sig4(least), sig4(largest))
-    }
+    let [least, largest] = plane::range(values.iter().copied());
+    from_to(least, largest)
 }
 
 /// Total tributary area, and the number of nodes without one.

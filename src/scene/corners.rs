@@ -2,7 +2,7 @@
 //! ([`stickslip_core::contact::facing`]).
 
 use std::collections::HashMap;
-use stickslip_core::model::{Body, BodyKind, Contact, Facing, Node};
+use stickslip_core::model::{Body, Contact, Facing, Node};
 use stickslip_core::plane::{cross, dot, minus};
 
 /// Angle between two elements above which their border is a real corner rather than part of a curve (30 degrees).
@@ -45,11 +45,8 @@ pub(super) fn face(pieces: &[usize], bodies: &[Body], pairs: &[usize], slaves: &
     }
     let edges: Vec<&Vec<usize>> = bodies
         .iter()
-        .filter_map(|body| match &body.kind {
-            BodyKind::Solid(solid) => Some(&solid.edges),
-            _ => None,
-        })
-        .flatten()
+        .filter_map(Body::solid)
+        .flat_map(|solid| &solid.edges)
         .collect();
     let pair_of: HashMap<usize, usize> = slaves
         .iter()

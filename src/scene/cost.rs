@@ -4,14 +4,15 @@ use super::Scene;
 use super::compile::increments;
 use super::{gaps, limits};
 use crate::format::error::some_of;
+use crate::groups::marked;
+use crate::joined;
 use crate::number::sig6;
 use std::fmt;
-use stickslip_core::model::{
-    Beam, Body, BodyKind, Elastic, ElementKind, Form, Linear, LinearSolver, Solid, Surface, Update,
-};
-use stickslip_core::words;
+use stickslip_core::model::{Beam, Form, Linear, LinearSolver};
 use stickslip_core::words::is_default;
-use stickslip_core::{Estimate, Model};
+use stickslip_core::{
+    Body, BodyKind, Elastic, ElementKind, Estimate, Model, Solid, Surface, Update, words,
+};
 
 /// Size and cost of a scene. Displayed as a table, so that users can check whether the scene is what they meant.
 #[derive(Debug, Clone, PartialEq)]
@@ -63,12 +64,8 @@ impl Cost {
                 .filter(|&d| dofs.equation[d].is_some())
                 .count()
         };
-        let mut on_body = vec![false; model.nodes.len()];
-        model
-            .bodies
-            .iter()
-            .flat_map(|b| &b.nodes)
-            .for_each(|&n| on_body[n] = true);
+        let nodes = model.bodies.iter().flat_map(|body| &body.nodes);
+        let on_body = marked(model.nodes.len(), nodes);
         let on_bodies = on_body.iter().filter(|on| **on).count();
         let of_bodies: usize = (0..model.nodes.len())
             .filter(|&n| on_body[n])
@@ -179,12 +176,8 @@ fn solid_line(name: &str, solid: &Solid) -> String {
             sig6(m.poisson)
         )
     };
-    let materials: Vec<String> = solid.materials.iter().map(made_of).collect();
-    format!(
-        "{name}: solid, {}, {}",
-        elements_of(solid),
-        materials.join("; ")
-    )
+    let materials = joined(solid.materials.iter().map(made_of), "; ");
+    format!("{name}: solid, {}, {}", elements_of(solid), materials)
 }
 
 /// Number of elements of each kind.
@@ -207,8 +200,8 @@ fn elements_of(solid: &Solid) -> String {
             kinds.push(element.kind);
         }
     }
-    let kinds: Vec<String> = kinds.iter().filter_map(of_kind).collect();
-    kinds.join(" and ")
+
+    joined(kinds.iter().filter_map(of_kind), " and ")
 }
 
 fn surface_line(surface: &Surface) -> String {
@@ -246,19 +239,21 @@ fn slaves_line(model: &Model) -> String {
             .filter(|slave| slave.start == mode)
             .count()
     };
-    let parts: Vec<String> = Mode::ALL
-        .into_iter()
-        .map(|mode| (starts(mode), mode.word()))
-        .filter(|(n, _)| *n > 0)
-        .map(|(n, w)| format!("{n} {w}"))
-        .collect();
+    let parts = joined(
+        Mode::ALL
+            .into_iter()
+            .map(|mode| (starts(mode), mode.word()))
+            .filter(|(n, _)| *n > 0)
+            .map(|(n, w)| format!("{n} {w}")),
+        ", ",
+    );
     if parts.is_empty() {
         return words::counted(0, "node");
     }
     format!(
         "{}; they start {}",
         words::counted(model.contacts.len(), "node"),
-        parts.join(", ")
+        parts
     )
 }
 
@@ -287,7 +282,7 @@ fn axis_lines(model: &Model) -> Vec<String> {
 }
 
 fn history_line(model: &Model) -> String {
-    let corners: Vec<String> = model.path.iter().map(f64::to_string).collect();
+    let corners = joined(&model.path, " -> ");
     let count = increments(&model.path, |leg| model.on_leg(leg));
     let sizes: Vec<String> = match model.increments.as_slice() {
         [] => vec![model.increment.to_string()],
@@ -297,7 +292,7 @@ fn history_line(model: &Model) -> String {
         "{} of at most {}, load factor {}",
         words::counted(count, "increment"),
         sizes.join(", "),
-        corners.join(" -> ")
+        corners
     )
 }
 

@@ -3,7 +3,7 @@
 use super::limits;
 use crate::format::error::{Fault, Path, bail, fault};
 use crate::format::spec::Point;
-use stickslip_core::words::counted;
+use stickslip_core::counted;
 
 pub(crate) fn point(path: &Path, (x, y): Point) -> Result<(), Fault> {
     limits::finite(&path.then(0), x, "x")?;

@@ -1,7 +1,8 @@
 //! Positions of the slave nodes relative to their surfaces before the first solve: initial gaps, warnings about them, and the
 //! effect of `settings.initial_gaps`.
 
-use crate::geometry::distance_to_segment;
+use crate::few;
+use crate::groups::marked;
 use crate::number::sig4;
 use crate::pressed;
 use std::cell::LazyCell;
@@ -9,9 +10,10 @@ use std::collections::HashSet;
 use stickslip_core::contact::facing::{MOST as MOST_SURFACES, faced};
 use stickslip_core::contact::projection::{project, projection_at};
 use stickslip_core::fem::lagrange;
-use stickslip_core::model::{Body, BodyKind, Contact, InitialGaps, Node, Surface};
-use stickslip_core::plane::dot;
-use stickslip_core::{Model, SurfaceElement, SurfacePoint};
+use stickslip_core::plane::{distance_to_segment, dot, range};
+use stickslip_core::{
+    Body, BodyKind, Contact, InitialGaps, Model, Node, Surface, SurfaceElement, SurfacePoint,
+};
 
 /// Gaps below this fraction of the scene's length count as zero.
 const NONE: f64 = 1e-9;
@@ -67,18 +69,24 @@ pub fn start_gaps(model: &Model) -> Vec<StartGaps> {
                 (spot.surface == surface).then_some((slave, gap))
             })
             .collect();
-        let gaps = || over.iter().map(|(_, gap)| *gap);
-        let least = gaps().fold(f64::INFINITY, f64::min);
-        let largest = gaps().fold(f64::NEG_INFINITY, f64::max);
         let inside = over.iter().filter(|(_, gap)| *gap < -NONE * model.length);
         (!over.is_empty()).then(|| StartGaps {
             surface,
             nodes: over.len(),
-            range: [least, largest],
+            range: range(over.iter().map(|(_, gap)| *gap)),
             inside: inside.map(|(slave, _)| *slave).collect(),
         })
     };
     (0..model.surfaces.len()).filter_map(of).collect()
+}
+
+/// A range in words; only one number if both ends are equal.
+pub(crate) fn from_to(least: f64, largest: f64) -> String {
+    if least == largest {
+        sig4(least)
+    } else {
+        format!("{} to {}", sig4(least), sig4(largest))
+    }
 }
 
 /// The initial gaps of each surface as short text, for `check` and the debugger's first screen.
@@ -92,11 +100,7 @@ pub fn words(model: &Model) -> Vec<String> {
                 gap
             }
         });
-        let range = if least == largest {
-            sig4(least)
-        } else {
-            format!("{} to {}", sig4(least), sig4(largest))
-        };
+        let range = from_to(least, largest);
         let inside = match found.inside.len() {
             0 => String::new(),
             n => format!(", {n} of {} inside", found.nodes),
@@ -209,18 +213,14 @@ fn normal(element: &[usize], nodes: &[Node], slopes: &[f64]) -> [f64; 2] {
 /// Mean outward direction at each outline node of a solid (not a unit vector at a corner).
 fn outward(model: &Model) -> Vec<Option<[f64; 2]>> {
     let mut all: Vec<Option<[f64; 2]>> = vec![None; model.nodes.len()];
-    for body in &model.bodies {
-        let BodyKind::Solid(solid) = &body.kind else {
-            continue;
-        };
-        for edge in &solid.edges {
-            let count = edge.len().saturating_sub(1).max(1);
-            for (k, &node) in edge.iter().enumerate() {
-                let xi = -1.0 + 2.0 * k as f64 / count as f64;
-                let n = normal(edge, &model.nodes, &lagrange::shape(edge.len(), xi).d);
-                let sum = all[node].get_or_insert([0.0; 2]);
-                *sum = [sum[0] + n[0], sum[1] + n[1]];
-            }
+    let solids = model.bodies.iter().filter_map(Body::solid);
+    for edge in solids.flat_map(|solid| &solid.edges) {
+        let count = edge.len().saturating_sub(1).max(1);
+        for (k, &node) in edge.iter().enumerate() {
+            let xi = -1.0 + 2.0 * k as f64 / count as f64;
+            let n = normal(edge, &model.nodes, &lagrange::shape(edge.len(), xi).d);
+            let sum = all[node].get_or_insert([0.0; 2]);
+            *sum = [sum[0] + n[0], sum[1] + n[1]];
         }
     }
     for sum in all.iter_mut().flatten() {
@@ -242,7 +242,7 @@ fn unheld(model: &Model) -> Vec<String> {
         bodies_at[node] += 1;
     }
     let joined = |body: &Body| body.nodes.iter().any(|&node| bodies_at[node] > 1);
-    let slaves = model.contacts.iter().map(|contact| contact.node);
+    let slaves = model.contacts.iter().map(|contact| &contact.node);
     let mut met: Vec<usize> = model
         .contacts
         .iter()
@@ -254,10 +254,7 @@ fn unheld(model: &Model) -> Vec<String> {
     let masters = met
         .iter()
         .flat_map(|&k| model.surfaces[k].elements.iter().flatten());
-    let mut at_contact = vec![false; model.nodes.len()];
-    for node in slaves.chain(masters.copied()) {
-        at_contact[node] = true;
-    }
+    let at_contact = marked(model.nodes.len(), slaves.chain(masters));
     let touches = |body: &Body| body.nodes.iter().any(|&node| at_contact[node]);
     model
         .bodies
@@ -279,10 +276,7 @@ fn overlapping(model: &Model) -> Vec<String> {
     let solids: Vec<(&Body, Outline)> = model
         .bodies
         .iter()
-        .filter_map(|body| match &body.kind {
-            BodyKind::Solid(solid) => Some((body, Outline::new(model, &solid.edges))),
-            _ => None,
-        })
+        .filter_map(|body| Some((body, Outline::new(model, &body.solid()?.edges))))
         .collect();
     let near = NONE.sqrt() * model.length;
     let mut all = Vec::new();
@@ -358,13 +352,8 @@ impl Outline {
 }
 
 fn some(model: &Model, slaves: &[usize]) -> String {
-    let names: Vec<&str> = slaves
-        .iter()
-        .take(MOST)
-        .map(|&slave| model.nodes[model.contacts[slave].node].name.as_str())
-        .collect();
-    let more = if slaves.len() > MOST { ", …" } else { "" };
-    names.join(", ") + more
+    let name = |&slave: &usize| &model.nodes[model.contacts[slave].node].name;
+    few(slaves.iter().map(name), MOST)
 }
 
 /// Moves slave nodes that start inside, or at most `within` away (length), onto their surfaces.

@@ -3,8 +3,8 @@
 use super::limits;
 use crate::format::error::{Fault, Path, bail};
 use stickslip_core::fem::continuum;
-use stickslip_core::model::{ElementKind, Node};
-use stickslip_core::plane::{cross, distance, dot, minus};
+use stickslip_core::plane::{cross, distance, distance_to_segment, minus};
+use stickslip_core::{ElementKind, Node};
 
 /// Rejects chains with an element whose nodes coincide or whose curve folds back or has zero velocity.
 ///
@@ -171,18 +171,6 @@ pub(crate) fn distance_up_to(
         }
     }
     least
-}
-
-/// Distance of a point from the segment from a to b.
-pub(crate) fn distance_to_segment(p: [f64; 2], a: [f64; 2], b: [f64; 2]) -> f64 {
-    let along = minus(b, a);
-    let square = dot(along, along);
-    let share = if square > 0.0 {
-        (((p[0] - a[0]) * along[0] + (p[1] - a[1]) * along[1]) / square).clamp(0.0, 1.0)
-    } else {
-        0.0
-    };
-    distance(p, [a[0] + share * along[0], a[1] + share * along[1]])
 }
 
 /// Diagonal of the bounding box of nodes; 0 without nodes.

@@ -10,9 +10,10 @@ use crate::format::error::{Fault, Path, at, fault, quoted, some_of};
 use crate::format::given::{Cells, NodeSet, SideSet};
 use crate::format::read;
 use crate::format::spec::Nodes;
+use crate::groups::marked;
 use crate::{SceneError, Spec};
 use std::collections::HashMap;
-use stickslip_core::model::ElementKind;
+use stickslip_core::ElementKind;
 use stickslip_exchange::gmsh;
 use stickslip_exchange::mesh::{Cell, CellKind, Mesh};
 use stickslip_exchange::vtu::cell_type;
@@ -124,11 +125,8 @@ pub(crate) fn mesh_nodes(
     scale: f64,
 ) -> Result<Nodes, (&'static str, String)> {
     let label = |&n: &usize| mesh.labels[n] as usize;
-    let mut used = vec![false; mesh.nodes.len()];
-    mesh.cells
-        .iter()
-        .flat_map(|cell| &cell.nodes)
-        .for_each(|&n| used[n] = true);
+    let used = mesh.cells.iter().flat_map(|cell| &cell.nodes);
+    let used = marked(mesh.nodes.len(), used);
     let nodes = (0..mesh.nodes.len()).filter(|&n| used[n]).map(|n| {
         (
             label(&n),

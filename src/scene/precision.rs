@@ -1,8 +1,7 @@
 //! Checks before a run whether double precision is sufficient for a scene.
 
 use stickslip_core::linear::sizes::expected_noise;
-use stickslip_core::model::BodyKind;
-use stickslip_core::{Model, Norms};
+use stickslip_core::{BodyKind, Model, Norms};
 
 /// Ratio of the expected round-off to the round-off found in runs.
 const GENEROUS: f64 = 10.0;

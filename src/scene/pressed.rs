@@ -5,10 +5,10 @@
 //! stretch is at most s, regardless of lateral motion. A point is prescribed by a support, by a prescribed displacement, or by a
 //! rigid surface that approaches it by more than its gap.
 
-use stickslip_core::Model;
 use stickslip_core::contact::projection::{project, projection_at};
 use stickslip_core::fem::deformation::{SOFTENING, StretchRange};
-use stickslip_core::model::{Body, BodyKind, Solid};
+use stickslip_core::plane::range;
+use stickslip_core::{Body, Model, Solid};
 
 /// Cosine above which a surface's normal counts as along an axis.
 const ALONG: f64 = 0.99;
@@ -31,10 +31,7 @@ pub fn warnings(model: &Model) -> Vec<String> {
     model
         .bodies
         .iter()
-        .filter_map(|body| match &body.kind {
-            BodyKind::Solid(solid) => warning(&motions, body, solid),
-            _ => None,
-        })
+        .filter_map(|body| warning(&motions, body, body.solid()?))
         .collect()
 }
 
@@ -68,15 +65,10 @@ fn warning(motions: &Motions, body: &Body, solid: &Solid) -> Option<String> {
 /// The load factors at which a prescribed displacement can be largest: corners of the path and of the amplitudes.
 fn loads(model: &Model) -> Vec<f64> {
     let scales = model.prescribed.iter().flat_map(|p| &p.scale.0);
-    let ends = model
-        .path
-        .iter()
-        .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], load| {
-            [low.min(*load), high.max(*load)]
-        });
+    let [low, high] = range(model.path.iter().copied());
     let corners = scales
         .map(|(load, _)| *load)
-        .filter(|load| (ends[0]..=ends[1]).contains(load));
+        .filter(|load| (low..=high).contains(load));
     let mut all: Vec<f64> = model.path.iter().copied().chain(corners).collect();
     all.sort_by(f64::total_cmp);
     all.dedup();

@@ -42,6 +42,22 @@ pub fn cut(text: &str, most: usize) -> String {
     }
 }
 
+/// All items, with a separator between them.
+pub fn joined<T: std::fmt::Display>(items: impl IntoIterator<Item = T>, separator: &str) -> String {
+    let items: Vec<String> = items.into_iter().map(|item| item.to_string()).collect();
+    items.join(separator)
+}
+
+/// The first few items, and an ellipsis if there are more.
+pub fn few<T: std::fmt::Display>(items: impl IntoIterator<Item = T>, most: usize) -> String {
+    let mut items = items.into_iter();
+    let first = joined(items.by_ref().take(most), ", ");
+    match items.next() {
+        None => first,
+        Some(_) => first + ", …",
+    }
+}
+
 /// The first few items, with a separator between them, and the number of the others.
 pub fn first_of<T: std::fmt::Display>(
     items: impl IntoIterator<Item = T>,
@@ -49,14 +65,10 @@ pub fn first_of<T: std::fmt::Display>(
     separator: &str,
 ) -> String {
     let mut items = items.into_iter();
-    let first: Vec<String> = items
-        .by_ref()
-        .take(most)
-        .map(|item| item.to_string())
-        .collect();
+    let first = joined(items.by_ref().take(most), separator);
     match items.count() {
-        0 => first.join(separator),
-        more => format!("{} and {more} more", first.join(separator)),
+        0 => first,
+        more => format!("{first} and {more} more"),
     }
 }
 

@@ -32,10 +32,10 @@ use std::fmt::Write;
 use std::num::NonZeroUsize;
 use std::path::Path;
 use std::sync::Arc;
-use stickslip_scene::embedded;
 use stickslip_scene::format::error::did_you_mean;
 use stickslip_scene::format::read::{text as file_text, value as from_ron};
 use stickslip_scene::{EmbeddedFile, Scene, SceneError, increments};
+use stickslip_scene::{embedded, joined};
 
 /// Name of the built-in list.
 pub const BUILTIN: &str = "benchmarks";
@@ -231,7 +231,7 @@ impl Benchmarks {
                     "scene {} has no monitor {wanted:?}{} (monitors: {})",
                     benchmark.scene,
                     did_you_mean(wanted, names()),
-                    names().collect::<Vec<_>>().join(", ")
+                    joined(names(), ", ")
                 ),
             ));
         }

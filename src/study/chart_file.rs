@@ -14,14 +14,16 @@
 //! )
 //! ```
 
+use super::figure::assigned;
+use super::plan::product;
 use super::read::{Vary, pairs};
 use super::reference::Reference;
 use serde::Deserialize;
 use std::path::PathBuf;
-use stickslip_scene::builtin;
 use stickslip_scene::embedded_all;
 use stickslip_scene::format::read::value;
 use stickslip_scene::{EmbeddedFile, Scene, SceneError};
+use stickslip_scene::{builtin, joined};
 
 /// A chart before it is measured.
 #[derive(Debug, Clone, PartialEq)]
@@ -169,27 +171,12 @@ impl Chart {
 
 /// Runs along the values of a setting: one series for each combination of the others.
 fn series(along: &Vary, others: &[Vary]) -> Vec<Series> {
-    let mut sets: Vec<Vec<(String, String)>> = vec![Vec::new()];
-    for other in others {
-        let extended = sets.iter().flat_map(|set| {
-            let pair = |value: &String| (other.path.clone(), value.clone());
-            other
-                .values
-                .iter()
-                .map(pair)
-                .map(|pair| [&set[..], &[pair]].concat())
-        });
-        sets = extended.collect();
-    }
     let name = |set: &[(String, String)]| match set {
         [] => along.path.clone(),
-        set => set
-            .iter()
-            .map(|(path, value)| format!("{path}={value}"))
-            .collect::<Vec<_>>()
-            .join(", "),
+        set => joined(assigned(set), ", "),
     };
-    sets.into_iter()
+    product(others)
+        .into_iter()
         .map(|set| Series {
             name: name(&set),
             vary: vec![along.clone()],
@@ -214,7 +201,7 @@ fn any() -> Vec<Series> {
         name: name.to_owned(),
         vary: vec![Vary {
             path: path.to_owned(),
-            values: values.iter().map(|v| v.to_string()).collect(),
+            values: values.iter().map(|word| word.to_string()).collect(),
         }],
         set: Vec::new(),
     };

@@ -15,7 +15,7 @@ use super::result::{CaseEnd, Run};
 use std::fmt::Write;
 use std::path::Path;
 use stickslip_platform::input::{MARK, Unreadable};
-use stickslip_scene::shown;
+use stickslip_scene::{joined, shown};
 
 /// Why a table cannot be read, with the location.
 #[derive(Debug, thiserror::Error)]
@@ -76,7 +76,7 @@ fn header(plan: &Plan) -> String {
         .chain(words)
         .chain(plan.monitors.iter().map(String::as_str))
         .chain(["jumped"]);
-    names.map(field).collect::<Vec<_>>().join(",") + "\n"
+    joined(names.map(field), ",") + "\n"
 }
 
 /// The rows of one run. Writing to a string does not fail.

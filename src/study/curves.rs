@@ -7,7 +7,7 @@ use super::drawn::PlotError;
 use super::linear_axis;
 use super::log_axis::range;
 use super::sheet::{Anchor, Axes, BLACK, CROSS, ENTRY, GREY, LABEL, MARGIN, SMALL, Sheet, widest};
-use stickslip_scene::number::sig6;
+use stickslip_scene::sig6;
 
 /// Size of the plot without axis labels, and its left edge.
 const PLOT: (f64, f64) = (620.0, 440.0);

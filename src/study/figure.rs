@@ -6,8 +6,8 @@ use super::origin;
 use super::plan::Plan;
 use super::read::{AxisQuantity, Study};
 use super::result::{CaseEnd, Run};
-use stickslip_core::words::counted;
-use stickslip_scene::number::sig6;
+use stickslip_core::counted;
+use stickslip_scene::{joined, sig6};
 
 /// The chart of a study: a curve per run, over the plan's axes.
 pub fn chart(plan: &Plan, runs: &[Run]) -> CurveChart {
@@ -43,15 +43,16 @@ pub fn chart(plan: &Plan, runs: &[Run]) -> CurveChart {
 
 /// The settings that distinguish a run: `increment=0.02, geometry=frozen`. Empty if there is only one run.
 pub fn label(names: &[String], values: &[String]) -> String {
-    names
-        .iter()
-        .zip(values)
-        .map(|(name, value)| match name.as_str() {
-            "scene" => value.clone(),
-            _ => format!("{name}={value}"),
-        })
-        .collect::<Vec<_>>()
-        .join(", ")
+    joined(
+        names
+            .iter()
+            .zip(values)
+            .map(|(name, value)| match name.as_str() {
+                "scene" => value.clone(),
+                _ => format!("{name}={value}"),
+            }),
+        ", ",
+    )
 }
 
 /// Settings as typed: `path=value`.

@@ -459,7 +459,10 @@ impl Log {
         let failed = LogError::file(&self.path);
         let value = notation::strict_line(value).map_err(|e| failed(io::Error::other(e)))?;
         let line = sealed(&format!("{key}\t{value}")) + "\n";
-        let mut file = self.file.lock().unwrap_or_else(|e| e.into_inner());
+        let mut file = self
+            .file
+            .lock()
+            .unwrap_or_else(std::sync::PoisonError::into_inner);
         file.write_all(line.as_bytes()).map_err(failed)
     }
 }

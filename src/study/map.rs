@@ -12,15 +12,15 @@ use super::monitor_kind::{MonitorKind, kind};
 use super::origin;
 use super::plan::{Plan, poses};
 use super::result::{CaseEnd, Run};
-use super::solver_pool::{SolverPool, Watch, one};
+use super::run::cells;
 use super::sweep::Sweep;
-use super::sweep_input::Input;
 use super::verdict::RunVerdict;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeSet, HashMap};
 use std::fmt::Write;
 use std::sync::Arc;
 use stickslip_core::Model;
+use stickslip_scene::joined;
 
 /// Default tolerance: runs whose ends differ by more than this fraction of the largest value are on different
 /// branches.
@@ -191,21 +191,9 @@ impl MapCell {
 /// The cases of a plan as cells of a sweep; the cases of one problem, which are compared with each other,
 /// belong to one shard.
 pub fn sweep(plan: &Plan) -> Sweep<'_, MapRun> {
-    let compute = |k: usize, spare: &SolverPool, watch: &Watch| {
-        let case = &plan.cases[k];
-        let model = Arc::new(case.model()?);
-        let run = one(case.increments, model.clone(), spare, watch);
-        Ok(MapRun::from_run(&run, &model))
-    };
-    Sweep {
-        input: Input::new("map", plan.input()),
-        cells: plan.cells(poses),
-        units: ["cells", "increments"],
-        is_timed: false,
-        runs: 1,
-        name: Box::new(|k| name(plan, k)),
-        compute: Box::new(compute),
-    }
+    cells(plan, ["map", "cells"], poses, |run, model| {
+        MapRun::from_run(&run, model)
+    })
 }
 
 impl Map {
@@ -298,12 +286,12 @@ impl Map {
             _ => None,
         });
         let jumped = cells().filter(|cell| cell.ended.jumped > 0);
-        let signs = failed
-            .chain(jumped.map(|_| "↯ jumped on the way".to_owned()))
-            .collect::<BTreeSet<_>>()
-            .into_iter()
-            .collect::<Vec<_>>()
-            .join("   ");
+        let signs = joined(
+            failed
+                .chain(jumped.map(|_| "↯ jumped on the way".to_owned()))
+                .collect::<BTreeSet<_>>(),
+            "   ",
+        );
         (!signs.is_empty()).then_some(signs)
     }
 
@@ -324,7 +312,7 @@ impl Map {
         named.sort_unstable();
         named.dedup();
         const SHOWN: usize = 4;
-        let names: Vec<String> = named.iter().take(SHOWN).map(|&k| self.name(k)).collect();
+        let names = joined(named.iter().take(SHOWN).map(|&k| self.name(k)), "; ");
         let more = match named.len().saturating_sub(SHOWN) {
             0 => String::new(),
             n => format!(" and {n} more (the table has them)"),
@@ -335,8 +323,7 @@ impl Map {
             format!(
                 "Ends are compared with those of {}{more}; wrong: a monitor differs by more than {} of the largest value \
                  of its kind.",
-                names.join("; "),
-                self.tolerance
+                names, self.tolerance
             )
         };
         vec![made, compared, origin::made_by()]
@@ -364,7 +351,7 @@ impl Map {
             "jumped",
         ];
         let heads = self.plan.columns.iter().map(String::as_str).chain(words);
-        text += &(heads.collect::<Vec<_>>().join(",") + "\n");
+        text += &(joined(heads, ",") + "\n");
         for (case, cell) in self.plan.cases.iter().zip(&self.cells) {
             let Some(cell) = cell else { continue };
             let MapRun {

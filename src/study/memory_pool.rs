@@ -70,14 +70,16 @@ impl MemoryPool {
         let mut taken = self
             .given
             .wait_while(self.taken(), full)
-            .unwrap_or_else(|e| e.into_inner());
+            .unwrap_or_else(std::sync::PoisonError::into_inner);
         taken.bytes += bytes;
         taken.runs += 1;
         MemoryShare { pool: self, bytes }
     }
 
     fn taken(&self) -> MutexGuard<'_, MemoryUse> {
-        self.taken.lock().unwrap_or_else(|e| e.into_inner())
+        self.taken
+            .lock()
+            .unwrap_or_else(std::sync::PoisonError::into_inner)
     }
 }
 

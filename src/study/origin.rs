@@ -23,7 +23,7 @@ pub fn made_by() -> String {
 
 /// The processor's name or, if unknown, its architecture; and the number of cores.
 pub fn machine() -> String {
-    let cores = std::thread::available_parallelism().map_or(1, |n| n.get());
+    let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
     let (system, kind) = (std::env::consts::OS, std::env::consts::ARCH);
     format!("{}, {cores} cores, {system}/{kind}", processor())
 }

@@ -20,9 +20,8 @@ use super::solver_pool::Watch;
 use super::sweep::RunError;
 use std::collections::HashMap;
 use std::num::NonZeroUsize;
-use stickslip_core::Model;
-use stickslip_core::words::counted;
-use stickslip_scene::number;
+use stickslip_core::{Model, counted};
+use stickslip_scene::{joined, number};
 
 /// Errors below this are round-off: a few thousand times the machine precision.
 pub const ROUND_OFF: f64 = 4096.0 * f64::EPSILON;
@@ -235,8 +234,8 @@ fn truth(
             Ok((table.clone().ok_or_else(none)?, None))
         }
         (Truth::Run(settings), _) => {
-            let names: Vec<String> = assigned(settings).collect();
-            let name = format!("a run with {}", names.join(", "));
+            let names = joined(assigned(settings), ", ");
+            let name = format!("a run with {names}");
             let stopped = "interrupted before the reference was computed";
             let run = run.ok_or_else(|| wrong(stopped.to_owned()))?.run;
             match run.failed() {
@@ -558,7 +557,7 @@ fn origin(
         .iter()
         .flatten()
         .map(|bar| number::sig2(*bar));
-    let bar = match bars.collect::<Vec<_>>().join(", forces ") {
+    let bar = match joined(bars, ", forces ") {
         none if none.is_empty() => none,
         bars => format!("; its error bar: {bars}"),
     };

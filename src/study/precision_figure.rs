@@ -10,7 +10,7 @@ use super::log_axis::{LogAxis, written};
 use super::placing::{OccupiedArea, Patch};
 use super::precision::{Cost, Point, Precision, ROUND_OFF, TIE};
 use super::sheet::{Anchor, Axes, BLACK, CROSS, ENTRY, GREY, LABEL, MARGIN, SMALL, Sheet, widest};
-use stickslip_scene::number::sig2;
+use stickslip_scene::{joined, sig2};
 
 /// Size of the plot, without axis labels.
 const PLOT: (f64, f64) = (620.0, 420.0);
@@ -422,10 +422,11 @@ fn ring(sheet: &mut Sheet, at: (f64, f64)) {
 
 /// The values only: `refine=2, increment=0.1` gives `2, 0.1`.
 fn values(name: &str) -> String {
-    name.split(", ")
-        .map(|pair| pair.rsplit('=').next().unwrap_or(pair).to_owned())
-        .collect::<Vec<_>>()
-        .join(", ")
+    joined(
+        name.split(", ")
+            .map(|pair| pair.rsplit('=').next().unwrap_or(pair).to_owned()),
+        ", ",
+    )
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use std::fmt::Write;
 use std::path::Path;
 use stickslip_platform::input::{self, TABLE_BYTES};
 use stickslip_scene::format::error::quoted;
-use stickslip_scene::shown;
+use stickslip_scene::{joined, shown};
 
 /// Maximum length of a name in a table, in characters.
 const MOST_NAME: usize = 200;
@@ -149,7 +149,7 @@ pub fn csv(charts: &[Precision]) -> String {
         .iter()
         .flat_map(|c| c.points.iter().map(move |p| (c, p)))
     {
-        let settings: Vec<String> = assigned(&point.settings).collect();
+        let settings = joined(assigned(&point.settings), " ");
         let status = match (&point.failed, point.reference) {
             (Some(why), _) => why.as_str(),
             (None, true) => "reference",
@@ -159,15 +159,15 @@ pub fn csv(charts: &[Precision]) -> String {
             &chart.scene,
             &chart.series[point.series],
             &point.name,
-            &settings.join(" "),
+            &settings,
             status,
         ];
-        let words: Vec<String> = words.into_iter().map(super::csv::field).collect();
+        let words = joined(words.into_iter().map(super::csv::field), ",");
         // Writing to a string does not fail.
         let _ = writeln!(
             text,
             "{},{},{:?},{},{},{},{},{},{},{},{},{},{},{},{},{}",
-            words.join(","),
+            words,
             cell(point.error),
             point.seconds,
             point.repeats,

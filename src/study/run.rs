@@ -8,22 +8,31 @@ use super::sweep::{RunError, Sweep};
 use super::sweep_input::Input;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
+use stickslip_core::Model;
 
 /// The runs of a plan as cells of a sweep.
 pub fn sweep(plan: &Plan) -> Sweep<'_, Run> {
-    let compute = |k: usize, spare: &SolverPool, watch: &Watch| {
+    cells(plan, ["study", "runs"], |_| true, |run, _| Some(run))
+}
+
+/// The cases of a plan as cells of a sweep with these names; `result` is what is kept of a run, and the shard of a case depends on
+/// the paths selected by `counts`.
+pub(super) fn cells<'a, T: 'a>(
+    plan: &'a Plan,
+    [what, unit]: [&'static str; 2],
+    counts: fn(&str) -> bool,
+    result: fn(Run, &Model) -> Option<T>,
+) -> Sweep<'a, T> {
+    let compute = move |k: usize, spare: &SolverPool, watch: &Watch| {
         let case = &plan.cases[k];
-        Ok(Some(one(
-            case.increments,
-            Arc::new(case.model()?),
-            spare,
-            watch,
-        )))
+        let model = Arc::new(case.model()?);
+        let run = one(case.increments, model.clone(), spare, watch);
+        Ok(result(run, &model))
     };
     Sweep {
-        input: Input::new("study", plan.input()),
-        cells: plan.cells(|_| true),
-        units: ["runs", "increments"],
+        input: Input::new(what, plan.input()),
+        cells: plan.cells(counts),
+        units: [unit, "increments"],
         is_timed: false,
         runs: 1,
         name: Box::new(|k| name(plan, k)),

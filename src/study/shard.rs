@@ -15,7 +15,8 @@
 use std::fmt;
 use std::num::NonZeroU64;
 use std::str::FromStr;
-use stickslip_core::words::counted;
+use stickslip_core::counted;
+use stickslip_scene::joined;
 
 /// Identifies a cell: a hash (FNV-1a, 128 bits) of everything that its result depends on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -129,22 +130,21 @@ pub fn ranges(numbers: &[usize], most: usize) -> String {
             _ => ranges.push((number, number)),
         }
     }
-    let words: Vec<String> = ranges
-        .iter()
-        .take(most)
-        .map(|&(first, last)| {
+    let words = joined(
+        ranges.iter().take(most).map(|&(first, last)| {
             if first == last {
                 first.to_string()
             } else {
                 format!("{first} to {last}")
             }
-        })
-        .collect();
+        }),
+        ", ",
+    );
     let more = match ranges.len().saturating_sub(most) {
         0 => String::new(),
         n => format!(" and {}", counted(n, "more range")),
     };
-    words.join(", ") + &more
+    words + &more
 }
 
 #[cfg(test)]

@@ -30,7 +30,7 @@ impl SolverPool {
         let spare = self
             .steppers
             .lock()
-            .unwrap_or_else(|e| e.into_inner())
+            .unwrap_or_else(std::sync::PoisonError::into_inner)
             .pop();
         let renewed = spare.and_then(|mut stepper| stepper.renew(&model).then_some(stepper));
         renewed.unwrap_or_else(|| Stepper::new(model))
@@ -39,7 +39,7 @@ impl SolverPool {
     fn give(&self, stepper: Stepper) {
         self.steppers
             .lock()
-            .unwrap_or_else(|e| e.into_inner())
+            .unwrap_or_else(std::sync::PoisonError::into_inner)
             .push(stepper);
     }
 }

@@ -66,7 +66,7 @@ impl Input {
             .zip(&theirs.parts)
             .into_iter()
             .find(|(ours, theirs)| ours != theirs);
-        let cut = |text: &str| shown::cut(text, SHOWN).to_string();
+        let cut = |text: &str| shown::cut(text, SHOWN);
         if let Some(((name, ours), (their_name, theirs))) = other {
             return Some(if name == their_name {
                 format!(

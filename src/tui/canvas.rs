@@ -3,6 +3,7 @@
 //! The canvas of ratatui supports only colours; this one stores full styles, so that dim lines stay dim without colour. The last
 //! drawing operation in a cell sets its style.
 
+use crate::paint;
 use ratatui::symbols::pixel::OCTANTS;
 use ratatui::{buffer::Buffer, layout::Rect, style::Style};
 use stickslip_debugger::explain::outline::{clip, mix};
@@ -41,6 +42,10 @@ impl Canvas {
         let Some((from, to)) = clip(from, to, [0.0; 2], self.size()) else {
             return;
         };
+        // Most elements of a fine mesh are smaller than a dot.
+        if from.map(|x| x as u32) == to.map(|x| x as u32) {
+            return self.dot(from, style);
+        }
         let length = (to[0] - from[0]).abs().max((to[1] - from[1]).abs());
         // Steps of exactly one dot could skip one by round-off.
         let steps = (length + 1e-6).ceil();
@@ -84,6 +89,25 @@ impl Canvas {
                 self.area.y + at[1] as u16 / 4,
             )
         })
+    }
+
+    /// The dots of points whose coordinates fill the canvas in these ranges, y upwards.
+    pub fn scale(&self, x: [f64; 2], y: [f64; 2]) -> impl Fn([f64; 2]) -> Dot + use<> {
+        let [width, height] = self.size();
+        let part = |value: f64, [low, high]: [f64; 2]| (value - low) / (high - low);
+        move |at| {
+            [
+                0.5 + part(at[0], x) * (width - 1.0),
+                height - 0.5 - part(at[1], y) * (height - 1.0),
+            ]
+        }
+    }
+
+    /// Writes a glyph into the cell at a position, in this style alone.
+    pub fn mark(&self, buffer: &mut Buffer, at: Dot, glyph: &str, style: Style) {
+        if let Some(cell) = self.cell(at).and_then(|at| buffer.cell_mut(at)) {
+            paint::mark(cell, glyph, style);
+        }
     }
 
     /// Writes the dots into the buffer; cells without dots are unchanged.

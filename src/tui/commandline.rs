@@ -7,7 +7,7 @@ use ratatui::style::Modifier;
 use ratatui::text::{Line, Span};
 use std::borrow::Cow;
 use stickslip_debugger::action::{self, ActionEntry, Context};
-use stickslip_scene::shown;
+use stickslip_scene::{joined, shown};
 use tui_input::{Input, InputRequest};
 use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
@@ -304,7 +304,7 @@ fn completions<'a>(
 /// The current keys of an action in brackets; empty if it has none.
 fn keys(entry: &'static ActionEntry, context: &Context) -> String {
     let keys = match context.keymap {
-        Some(keymap) => keymap.keys(entry).collect::<Vec<_>>().join(" "),
+        Some(keymap) => joined(keymap.keys(entry), " "),
         None => entry.keys.join(" "),
     };
     if keys.is_empty() {
@@ -331,7 +331,7 @@ fn choices(text: &str, context: &Context) -> String {
                     name.clone()
                 }
             });
-            words.collect::<Vec<_>>().join("  ")
+            joined(words, "  ")
         }
     }
 }

@@ -6,6 +6,7 @@ use crate::theme::Theme;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Modifier;
+use stickslip_core::plane::range;
 
 /// Width of the axis with its labels.
 pub const LABELS: u16 = 7;
@@ -47,16 +48,12 @@ struct Scale {
 impl Scale {
     fn new(points: &[Point], rows: u16) -> Self {
         let all = points.iter().flat_map(Point::numbers);
-        let logs = || {
-            all.clone()
-                .filter(|v| v.is_finite() && *v > 0.0)
-                .map(f64::log10)
-        };
+        let logs = all.filter(|v| v.is_finite() && *v > 0.0).map(f64::log10);
         let zero = points
             .iter()
             .any(|point| point.main <= 0.0 || point.other <= 0.0);
-        let top = logs().fold(f64::NEG_INFINITY, f64::max).ceil();
-        let bottom = logs().fold(f64::INFINITY, f64::min).floor();
+        let [bottom, top] = range(logs);
+        let (bottom, top) = (bottom.floor(), top.ceil());
         let (top, bottom) = if top.is_finite() {
             (top, bottom.min(top - 1.0))
         } else {

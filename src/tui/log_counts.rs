@@ -1,9 +1,10 @@
 //! Counts the warnings and errors in an attached solver's log, and announces the last new one once.
 
-use stickslip_core::words::counted;
+use stickslip_core::counted;
 use stickslip_debugger::Log;
 use stickslip_debugger::recorded::log::LogOrigin;
 use stickslip_exchange::attach::message::Level;
+use stickslip_scene::joined;
 
 /// How much of a solver's log has been counted.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -40,6 +41,6 @@ impl LogCounts {
     pub fn words(&self) -> String {
         let of = |count: usize, what: &str| (count > 0).then(|| counted(count, what));
         let parts = [of(self.errors, "error"), of(self.warnings, "warning")];
-        parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
+        joined(parts.into_iter().flatten(), ", ")
     }
 }

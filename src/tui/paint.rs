@@ -40,9 +40,9 @@ pub fn lines(buffer: &mut Buffer, area: Rect, lines: &[Line]) {
     }
 }
 
-/// Writes a line in place of missing content.
+/// Writes a text in place of missing content.
 pub fn note(buffer: &mut Buffer, area: Rect, text: &str, theme: &Theme) {
-    lines(buffer, area, &[Line::styled(text, theme.faint)]);
+    lines(buffer, area, &wrapped(text, area.width.into(), theme.faint));
 }
 
 /// A text cut to a width, with `…` in place of the rest.
@@ -101,5 +101,21 @@ pub fn wrapped(text: &str, width: usize, style: Style) -> Lines {
     wrap(text, width.saturating_sub(2))
         .into_iter()
         .map(|line| Line::styled(format!(" {line}"), style))
+        .collect()
+}
+
+/// Wraps a text behind a lead into lines of this width; under the lead the further lines are blank.
+pub fn hanging(lead: &[Span<'static>], text: &str, width: usize, style: Style) -> Lines {
+    let line = |(row, words): (usize, String)| {
+        let lead = lead.iter().map(|span| match row {
+            0 => span.clone(),
+            _ => Span::styled(" ".repeat(span.width()), span.style),
+        });
+        Line::from_iter(lead.chain([Span::styled(words, style)]))
+    };
+    wrap(text, width)
+        .into_iter()
+        .enumerate()
+        .map(line)
         .collect()
 }

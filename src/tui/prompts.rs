@@ -38,7 +38,7 @@ impl App {
         let asked = self.learning.lesson.as_ref().and_then(Tutor::question);
         let open = view
             .is_some_and(|view| self.learning.guess().is_some() && self.learning.hides_any(view));
-        match asked.map(|question| question.kind()) {
+        match asked.map(stickslip_debugger::teach::question::TutorQuestion::kind) {
             Some(AnswerKind::Number) => self.overlay = Overlay::line(Purpose::Answer, ""),
             Some(AnswerKind::Mode | AnswerKind::Choice) => self.overlay = Overlay::Answer,
             None if open => self.overlay = Overlay::Answer,

@@ -18,8 +18,7 @@ pub fn draw(buffer: &mut Buffer, inner: Rect, run: &FinishedRun, app: &App, view
     let points = || shape.faces.iter().flatten().flatten();
     if points().next().is_none() || inner.height < 2 {
         let none = "The surfaces are drawn from the deck (.inp) next to the run; there is none that can be read.";
-        let lines = paint::wrapped(none, inner.width.into(), app.theme.faint);
-        return paint::lines(buffer, inner, &lines);
+        return paint::note(buffer, inner, none, &app.theme);
     }
     let is_plane = points().all(|point| point[2] == 0.0);
     let flat = |[x, y, z]: [f64; 3]| {

@@ -1,10 +1,9 @@
 //! The data that the panes draw: a read-only view of a session.
 
 use std::borrow::Cow;
-use stickslip_core::model::{Monitor, MonitorQuantity};
 use stickslip_core::{
-    Capabilities, ContactRecord, Event, Forced, Intervention, Mode, Model, Norms, Outcome,
-    PointDeformation, Position,
+    Capabilities, ContactRecord, Event, Forced, Intervention, Mode, Model, Monitor,
+    MonitorQuantity, Norms, Outcome, PointDeformation, Position,
 };
 use stickslip_debugger::action::Context;
 use stickslip_debugger::explain::model_facts::ModelFacts;
@@ -14,8 +13,7 @@ use stickslip_debugger::teach;
 use stickslip_debugger::{
     DiagnosisPage, Frame, Log, NodePush, RemedyTrial, RoundOff, Session, Strip, Tree,
 };
-use stickslip_scene::Scene;
-use stickslip_scene::{number, shown};
+use stickslip_scene::{Scene, number, shown};
 
 /// All session data needed for drawing. Plain data, so that tests can construct it.
 #[derive(Debug, Clone)]
@@ -269,7 +267,7 @@ impl<'a> View<'a> {
     /// Whether an attached solver's decision on a node differs from its rules for the same values.
     pub fn differs(&self, slave: usize) -> bool {
         let record = self.record(slave).filter(|_| self.attached.is_some());
-        record.is_some_and(|record| record.differs())
+        record.is_some_and(stickslip_core::ContactRecord::differs)
     }
 
     /// The range below which a monitor's values are round-off.

@@ -1,7 +1,7 @@
 //! The program from outside: exit codes, what goes to which stream, and what happens to files.
 
 use crate::program::{
-    code, err, interrupted, names, out, program, read_first_line, rows, well, words,
+    code, err, interrupted, names, out, program, read_first_line, refused, rows, well, words,
 };
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
@@ -285,8 +285,7 @@ fn files_are_overwritten_only_when_asked_and_that_is_known_before_the_solve() {
         let mut arguments = vec!["run", ROUGH, option, "precious"];
         arguments.extend(LONG);
         let output = crate::program::ran(directory.path(), &arguments);
-        assert_eq!(code(&output), 2, "{option}");
-        assert!(err(&output).contains("--force"), "{}", err(&output));
+        refused(&output, "--force");
         assert_eq!(std::fs::read_to_string(&file).unwrap(), "precious");
         let output = crate::program::ran(
             directory.path(),
@@ -373,8 +372,7 @@ fn what_is_recorded_replays_and_what_differs_is_told() {
     let unknown = text.replace("format: 1", "format: 7");
     std::fs::write(directory.path().join("unknown.ron"), unknown).unwrap();
     let output = ran(&["replay", "unknown.ron", "a.ron"]);
-    assert_eq!(code(&output), 2);
-    assert!(err(&output).contains("format 7"), "{}", err(&output));
+    refused(&output, "format 7");
     assert!(out(&output).contains("a.ron: equal"), "the others are done");
 
     let output = ran(&words(&format!("record {BEAM} --at 3 -o a.ron")));

@@ -44,6 +44,14 @@ pub fn well(output: &Output) -> String {
     out(output)
 }
 
+/// It ended with exit code 2 and said this to standard error.
+#[track_caller]
+pub fn refused(output: &Output, part: &str) {
+    let told = err(output);
+    assert_eq!(code(output), 2, "{told}");
+    assert!(told.contains(part), "{part:?} in {told}");
+}
+
 pub fn out(output: &Output) -> String {
     String::from_utf8(output.stdout.clone()).unwrap()
 }

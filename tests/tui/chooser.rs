@@ -1,8 +1,9 @@
 //! The chooser: groups, what a typed text leaves, a look at the selected offer, and the ways back; and files completed at the
 //! colon.
 
-use stickslip::record::journal::digest;
+use stickslip::record::state_digest::StateDigests;
 use stickslip::scene::Scene;
+use stickslip::step::State;
 use stickslip::teach::progress::Progress;
 use stickslip::tui::Debugger;
 use stickslip::tui::chooser_state;
@@ -17,6 +18,10 @@ fn choosing() -> Debugger {
     let mut debugger = Debugger::new(Theme::mono(), offers, None);
     debugger.settle();
     debugger
+}
+
+fn digest_of(state: &State) -> String {
+    StateDigests::default().digest(state)
 }
 
 fn scene_of(debugger: &Debugger) -> Option<&str> {
@@ -87,14 +92,14 @@ fn escape_forgets_what_was_typed_then_goes_back_and_never_quits() {
         "{told}"
     );
     debugger.type_keys("Enter s s o");
-    let state = digest(&debugger.session.as_ref().unwrap().frame().state);
+    let state = digest_of(&debugger.session.as_ref().unwrap().frame().state);
     debugger.type_text("osc");
     assert_eq!(press(&mut debugger, "Esc"), None);
     assert_eq!(press(&mut debugger, "Esc"), None);
     let back = debugger.text(80, 24);
     assert!(back.contains(" Slave nodes "), "{back}");
     assert_eq!(
-        digest(&debugger.session.as_ref().unwrap().frame().state),
+        digest_of(&debugger.session.as_ref().unwrap().frame().state),
         state
     );
     // Only q quits, and only where nothing is typed and nothing is open.
@@ -189,7 +194,7 @@ fn a_journal_is_opened_where_it_was_left() {
     debugger.type_keys("Enter :");
     debugger.type_text(&format!("journal {}", file.display()));
     debugger.type_keys("Enter s s s s");
-    let state = digest(&debugger.session.as_ref().unwrap().frame().state);
+    let state = digest_of(&debugger.session.as_ref().unwrap().frame().state);
     // Who has it open keeps it.
     let open = format!("{}/to", folder.path().display());
     let mut other = choosing();
@@ -207,7 +212,7 @@ fn a_journal_is_opened_where_it_was_left() {
     other.type_text(&open);
     other.type_keys("Tab Enter");
     let session = other.session.as_ref().unwrap();
-    assert_eq!(digest(&session.frame().state), state);
+    assert_eq!(digest_of(&session.frame().state), state);
     assert!(other.text(120, 40).contains("resumed from its journal"));
     assert_eq!(session.journal().path(), Some(file.as_path()));
 }

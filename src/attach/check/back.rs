@@ -4,8 +4,7 @@ use super::report::{Outcome, fails, good, not_offered};
 use super::steps::difference;
 use super::trial::{Trial, at, is_last};
 use serde_json::Value;
-use stickslip_core::Mode;
-use stickslip_core::words::counted;
+use stickslip_core::{Mode, counted};
 use stickslip_debugger::Fault;
 use stickslip_exchange::attach::message::{EndedLevel, Restore, State};
 

@@ -3,9 +3,8 @@
 use super::report::{Outcome, fails, good, not_offered};
 use super::trial::{Trial, at, is_last};
 use serde_json::Value;
-use stickslip_core::Mode;
 use stickslip_core::plane::max_abs;
-use stickslip_core::words::counted;
+use stickslip_core::{Mode, counted};
 use stickslip_debugger::Fault;
 use stickslip_debugger::explain::names::{self, MODES};
 use stickslip_debugger::recorded::orders::{FRICTION, INCREMENT};

@@ -15,7 +15,7 @@ mod trial;
 
 use super::link::Start;
 pub use report::{CheckResult, Outcome, Report, Verdict};
-use stickslip_core::words::counted;
+use stickslip_core::counted;
 use stickslip_debugger::{Fault, Log};
 use stickslip_exchange::attach::message::State;
 use trial::{Trial, millis};

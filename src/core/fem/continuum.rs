@@ -38,7 +38,7 @@ pub trait Formulation: Sync {
         &self,
         count: usize,
         node: &dyn Fn(usize) -> ([f64; 2], [f64; 2]),
-        see: &mut dyn FnMut(PointGradient),
+        see: &mut dyn FnMut(&PointGradient<'_>),
     );
 
     /// Integration points and weights in the parent element, with the shape functions and their derivatives.
@@ -123,27 +123,30 @@ impl<const N: usize, const P: usize> Formulation for ContinuumKind<N, P> {
         &self,
         count: usize,
         node: &dyn Fn(usize) -> ([f64; 2], [f64; 2]),
-        see: &mut dyn FnMut(PointGradient),
+        see: &mut dyn FnMut(&PointGradient<'_>),
     ) {
         if count != N {
             return;
         }
-        let (mut at, mut u) = ([[0.0; 2]; N], [[0.0; 2]; N]);
-        for (k, (at, u)) in at.iter_mut().zip(&mut u).enumerate() {
-            (*at, *u) = node(k);
-        }
+        let own: [_; N] = std::array::from_fn(|k| {
+            let ([x, y], [u, v]) = node(k);
+            [x, y, u, v]
+        });
         let points = self.rule().iter().map(|parent| (parent, true));
         let nodes = self.at_nodes().iter().map(|parent| (parent, false));
         for (parent, integrates) in points.chain(nodes) {
-            if let Some(h) = isoparametric::slope_at(parent, &at, &u) {
-                let mean = |of: &[[f64; 2]; N], k: usize| -> f64 {
-                    parent.n.iter().zip(of).map(|(n, x)| n * x[k]).sum()
+            if let Some(h) = isoparametric::slope_at(parent, &own) {
+                let mean = |k: usize| -> f64 {
+                    let shares = parent.n.iter().zip(&own);
+                    shares.map(|(n, node)| n * node[k]).sum()
                 };
-                let (x, moved) = (mean(&at, 0), [mean(&u, 0), mean(&u, 1)]);
-                see(PointGradient {
+                see(&PointGradient {
                     h,
-                    hoop: if x > 0.0 { moved[0] / x } else { 0.0 },
-                    at: [x + moved[0], mean(&at, 1) + moved[1]],
+                    hoop: &|| {
+                        let x = mean(0);
+                        if x > 0.0 { mean(2) / x } else { 0.0 }
+                    },
+                    at: &|| [0, 1].map(|k| mean(k) + mean(2 + k)),
                     integrates,
                 });
             }
@@ -191,14 +194,13 @@ impl Element for Malformed {
 }
 
 /// ∂u/∂X at a point of an element.
-#[derive(Debug, Clone, Copy)]
-pub struct PointGradient {
+pub struct PointGradient<'a> {
     /// H, in the plane.
     pub h: [[f64; 2]; 2],
-    /// Hoop strain u_x/X of a body of revolution; 0 on the axis.
-    pub hoop: f64,
-    /// Current position.
-    pub at: [f64; 2],
+    /// Computes the hoop strain u_x/X of a body of revolution; 0 on the axis.
+    pub hoop: &'a dyn Fn() -> f64,
+    /// Computes the current position.
+    pub at: &'a dyn Fn() -> [f64; 2],
     /// Whether the point is an integration point rather than a node.
     pub integrates: bool,
 }

@@ -86,11 +86,11 @@ impl StretchRange {
     }
 
     /// Fraction of the range that a point uses; more than 1 outside the range.
-    fn used(self, point: &PointDeformation) -> f64 {
+    fn used(self, stretch: f64, determinant: f64) -> f64 {
         match self {
-            StretchRange::Stretch(least) if point.stretch > 0.0 => least / point.stretch,
+            StretchRange::Stretch(least) if stretch > 0.0 => least / stretch,
             StretchRange::Stretch(_) => f64::INFINITY,
-            StretchRange::Volume(most) => point.determinant / most,
+            StretchRange::Volume(most) => determinant / most,
             StretchRange::Unlimited => 0.0,
         }
     }
@@ -100,24 +100,24 @@ impl StretchRange {
 pub fn deformation(model: &Model, u: &[f64]) -> Option<Deformation> {
     let mut worst = None;
     let mut used = 1.0;
-    each_point(model, u, |elastic, point, integrates| {
-        let worst = worst.get_or_insert(Deformation {
-            smallest: point,
-            flattest: point,
+    each_point(model, u, |point| {
+        let worst = worst.get_or_insert_with(|| Deformation {
+            smallest: point.deformation(),
+            flattest: point.deformation(),
             outside: None,
         });
         if is_less(point.determinant, worst.flattest.determinant) {
-            worst.flattest = point;
+            worst.flattest = point.deformation();
         }
-        if !integrates {
+        if !point.gradient.integrates {
             return;
         }
         if is_less(point.stretch, worst.smallest.stretch) {
-            worst.smallest = point;
+            worst.smallest = point.deformation();
         }
-        let uses = StretchRange::from_elastic(elastic).used(&point);
+        let uses = StretchRange::from_elastic(point.elastic).used(point.stretch, point.determinant);
         if uses > used {
-            (used, worst.outside) = (uses, Some(point));
+            (used, worst.outside) = (uses, Some(point.deformation()));
         }
     });
     worst
@@ -137,9 +137,9 @@ pub fn by_element(model: &Model, u: &[f64]) -> Vec<Vec<[f64; 2]>> {
     };
     let start = |body: &crate::model::Body| vec![[f64::INFINITY; 2]; count(&body.kind)];
     let mut all: Vec<Vec<[f64; 2]>> = model.bodies.iter().map(start).collect();
-    each_point(model, u, |_, point, integrates| {
+    each_point(model, u, |point| {
         let [stretch, determinant] = &mut all[point.body][point.element];
-        if integrates {
+        if point.gradient.integrates {
             *stretch = stretch.min(point.stretch);
         }
         *determinant = determinant.min(point.determinant);
@@ -147,9 +147,30 @@ pub fn by_element(model: &Model, u: &[f64]) -> Vec<Vec<[f64; 2]>> {
     all
 }
 
-/// Calls a function for every point of every solid element, integration points before nodes. The last argument of the function
-/// is whether the point is an integration point.
-fn each_point(model: &Model, u: &[f64], mut see: impl FnMut(&Elastic, PointDeformation, bool)) {
+/// A point of an element that is being looked at.
+struct SampledPoint<'a> {
+    elastic: &'a Elastic,
+    body: usize,
+    element: usize,
+    stretch: f64,
+    determinant: f64,
+    gradient: &'a PointGradient<'a>,
+}
+
+impl SampledPoint<'_> {
+    fn deformation(&self) -> PointDeformation {
+        PointDeformation {
+            body: self.body,
+            element: self.element,
+            at: (self.gradient.at)(),
+            stretch: self.stretch,
+            determinant: self.determinant,
+        }
+    }
+}
+
+/// Calls a function for every point of every solid element, integration points before nodes.
+fn each_point(model: &Model, u: &[f64], mut see: impl FnMut(&SampledPoint<'_>)) {
     for (body, one) in model.bodies.iter().enumerate() {
         let BodyKind::Solid(solid) = &one.kind else {
             continue;
@@ -162,32 +183,32 @@ fn each_point(model: &Model, u: &[f64], mut see: impl FnMut(&Elastic, PointDefor
                 (model.nodes[node].at, [u[first], u[first + 1]])
             };
             let formulation = continuum::formulation(element.kind);
-            formulation.sample(element.nodes.len(), &node, &mut |point| {
-                let [stretch, determinant] = measures(elastic, &point);
-                let point_deformation = PointDeformation {
+            formulation.sample(element.nodes.len(), &node, &mut |gradient| {
+                let [stretch, determinant] = measures(elastic, gradient);
+                see(&SampledPoint {
+                    elastic,
                     body,
                     element: number,
-                    at: point.at,
                     stretch,
                     determinant,
-                };
-                see(elastic, point_deformation, point.integrates);
+                    gradient,
+                });
             });
         }
     }
 }
 
 /// Smallest principal stretch and det F.
-fn measures(elastic: &Elastic, point: &PointGradient) -> [f64; 2] {
+fn measures(elastic: &Elastic, point: &PointGradient<'_>) -> [f64; 2] {
     let [[h11, h12], [h21, h22]] = point.h;
-    let (a, b) = (
-        (2.0 + h11 + h22).hypot(h21 - h12),
-        (h11 - h22).hypot(h12 + h21),
-    );
+    // `hypot` would take most of the time, and its last digits depend on the system.
+    let length = |x: f64, y: f64| (x * x + y * y).sqrt();
+    let a = length(2.0 + h11 + h22, h21 - h12);
+    let b = length(h11 - h22, h12 + h21);
     let (smaller, in_plane) = (0.5 * (a - b), 0.25 * (a - b) * (a + b));
     match (elastic.plane, elastic.update) {
         (Plane::Axisymmetric, _) => {
-            let hoop = 1.0 + point.hoop;
+            let hoop = 1.0 + (point.hoop)();
             // An inversion in the plane and one around the axis would cancel, so a hoop stretch <= 0 counts as inverted.
             let determinant = match hoop > 0.0 {
                 true => in_plane * hoop,
@@ -201,7 +222,7 @@ fn measures(elastic: &Elastic, point: &PointGradient) -> [f64; 2] {
 }
 
 /// Thickness stretch in plane stress; −1 if the law admits no positive thickness.
-fn thickness(elastic: &Elastic, point: &PointGradient) -> f64 {
+fn thickness(elastic: &Elastic, point: &PointGradient<'_>) -> f64 {
     let [[h11, h12], [h21, h22]] = point.h;
     let strain = nalgebra::Vector3::new(
         h11 + 0.5 * (h11 * h11 + h21 * h21),

@@ -28,9 +28,19 @@ pub enum BodyKind {
 }
 
 impl Body {
+    /// The mesh, if it is a solid.
+    pub fn solid(&self) -> Option<&Solid> {
+        match &self.kind {
+            BodyKind::Solid(solid) => Some(solid),
+            _ => None,
+        }
+    }
+
     /// Whether it is a body of revolution.
     pub fn is_axisymmetric(&self) -> bool {
-        matches!(&self.kind, BodyKind::Solid(solid) if solid.materials.iter().any(|m| m.plane == Plane::Axisymmetric))
+        let round = |material: &Elastic| material.plane == Plane::Axisymmetric;
+        self.solid()
+            .is_some_and(|solid| solid.materials.iter().any(round))
     }
 
     /// Whether equilibrium of the whole body is written on its undeformed shape ([`Update::Small`]).

@@ -17,6 +17,7 @@ mod load;
 mod mesh;
 mod settings;
 
+use crate::plane::range;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -258,18 +259,14 @@ pub enum ReportedKind {
 }
 
 /// Diagonal of the bounding box of nodes; 0 for none.
-pub fn diagonal<'a>(nodes: impl Iterator<Item = &'a Node>) -> f64 {
-    let none = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
-    let [low, high] = nodes.fold(none, |[low, high], node| {
-        let [x, y] = node.at;
-        [
-            [low[0].min(x), low[1].min(y)],
-            [high[0].max(x), high[1].max(y)],
-        ]
-    });
-    let size = [high[0] - low[0], high[1] - low[1]];
-    if size[0] >= 0.0 {
-        size[0].hypot(size[1])
+pub fn diagonal<'a>(nodes: impl Iterator<Item = &'a Node> + Clone) -> f64 {
+    let extent = |axis: usize| {
+        let [low, high] = range(nodes.clone().map(|node| node.at[axis]));
+        high - low
+    };
+    let width = extent(0);
+    if width >= 0.0 {
+        width.hypot(extent(1))
     } else {
         0.0
     }
@@ -327,9 +324,7 @@ impl Model {
 
     /// Whether any body is a solid.
     pub fn has_solids(&self) -> bool {
-        self.bodies
-            .iter()
-            .any(|body| matches!(body.kind, BodyKind::Solid(_)))
+        self.bodies.iter().any(|body| body.solid().is_some())
     }
 
     /// Whether old factors are kept where they help, with this choice of when to factor.
@@ -418,6 +413,7 @@ impl Model {
     }
 
     /// Reference position of a node; z is 0 in the plane.
+    #[inline]
     pub fn at_in_space(&self, node: usize) -> [f64; 3] {
         let [x, y] = self.nodes[node].at;
         let heights = self.space.as_ref().map(|space| &space.heights);
@@ -426,6 +422,7 @@ impl Model {
     }
 
     /// Current position of a node ([`Model::place`]); z is 0 in the plane.
+    #[inline]
     pub fn place_in_space(&self, u: &[f64], node: usize) -> [f64; 3] {
         let [x, y] = self.place(u, node);
         let [_, _, z] = self.at_in_space(node);

@@ -3,7 +3,6 @@
 use crate::model::least;
 use crate::step::iterate::Iterate;
 use crate::step::jump::AcceptanceNotes;
-use crate::step::verdict::range_left;
 use crate::{Fallback, Mode, Norms, Outcome, Status, SubIncrement, Verdict};
 use std::sync::Arc;
 
@@ -53,7 +52,7 @@ impl Iterate {
             .fallback
             .map(|fallback| fallback.by)
             .filter(|by| *by != Fallback::Back);
-        let left_range = range_left(&*self.source, &self.state);
+        let left_range = self.take_range_left();
         let start = Arc::make_mut(&mut self.state.start);
         start.load_factor = self.state.load_factor;
         let turned = leg != start.leg;

@@ -29,6 +29,8 @@ impl Stepper {
     /// if the limit of minor iterations was accepted instead.
     pub(super) fn end_major(&mut self, settled: bool) -> Outcome {
         let held = self.now.hold(&self.event.nodes);
+        // The correction of new factors measures what the previous ones left.
+        let fresh = self.now.state.major.factored.is_none();
         let before = self.now.state.major.correction;
         let asked = if self.now.keeps_factors() {
             self.now.source.required_force()
@@ -84,7 +86,8 @@ impl Stepper {
         {
             return self.refuse_inverted(point);
         }
-        self.now.renew_factors(asked, before, &after);
+        self.now
+            .renew_factors(asked, if fresh { 0.0 } else { before }, &after);
         self.now.state.next_major();
         if !bounded {
             return self.fail(Failure::Diverged {

@@ -187,7 +187,7 @@ pub enum Status {
 }
 
 /// The last accepted state, from which an increment can be retried.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct IncrementStart {
     /// Load factor of the state.
     pub load_factor: f64,

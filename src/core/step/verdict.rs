@@ -12,8 +12,7 @@
 use crate::model::{SlipCount, Sticking, TieRule};
 use crate::step::iterate::Iterate;
 use crate::{
-    Failure, Finding, Forced, JudgedLaw, Norms, Outcome, PointDeformation, Source, State, Stepper,
-    Verdict,
+    Failure, Finding, Forced, JudgedLaw, Norms, Outcome, PointDeformation, State, Stepper, Verdict,
 };
 
 impl Stepper {
@@ -69,9 +68,22 @@ impl Stepper {
 }
 
 impl Iterate {
-    /// Worst point of an inverted element of the current state. `None` if no element is inverted.
-    pub(super) fn inverted(&self) -> Option<PointDeformation> {
-        self.source.deformation(&self.state.u)?.inverted()
+    /// Worst point of an inverted element of the current state. `None` if no element is inverted. The same pass over all points
+    /// renews `outside`.
+    pub(super) fn inverted(&mut self) -> Option<PointDeformation> {
+        let found = self.source.deformation(&self.state.u)?;
+        self.outside = found.outside;
+        found.inverted()
+    }
+
+    /// Takes the worst point outside the range of its law in the state that is being accepted. `None` if all are inside, or if a
+    /// point was already outside in the last accepted state.
+    pub(super) fn take_range_left(&mut self) -> Option<PointDeformation> {
+        let inside_before = || {
+            let before = self.source.deformation(&self.state.start.u);
+            before.is_none_or(|found| found.outside.is_none())
+        };
+        self.outside.take().filter(|_| inside_before())
     }
 
     /// Restores the anchors of the nodes that touched when the increment started, for the rest of the attempt, and continues with
@@ -102,13 +114,6 @@ impl State {
                 .iter()
                 .any(|node| matches!(node.forced, Forced::Held(_)))
     }
-}
-
-/// Worst point of a state outside the range of its law. `None` if all are inside, or if a point was already outside in the last
-/// accepted state.
-pub(super) fn range_left(source: &dyn Source, state: &State) -> Option<PointDeformation> {
-    let outside = |u: &[f64]| source.deformation(u)?.outside;
-    outside(&state.u).filter(|_| outside(&state.start.u).is_none())
 }
 
 /// Whether a law concerns the net slip of a node.

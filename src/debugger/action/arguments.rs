@@ -12,6 +12,7 @@ use crate::{BranchTarget, Command, ExportScope, Watch, WatchQuantity};
 use std::path::PathBuf;
 use stickslip_core::Mode;
 use stickslip_manual as manual;
+use stickslip_scene::joined;
 use stickslip_study::Vary;
 
 /// Maximum number of characters after an action's name.
@@ -423,8 +424,8 @@ fn monitor(name: &str, context: &Context) -> Result<usize, ParseError> {
         if monitors.is_empty() {
             ParseError::NoMonitors
         } else {
-            let names: Vec<_> = monitors.iter().map(|m| m.name.as_str()).collect();
-            let (name, monitors) = (name.to_string(), names.join(", "));
+            let names = joined(monitors.iter().map(|m| &m.name), ", ");
+            let (name, monitors) = (name.to_string(), names);
             ParseError::NoMonitor { name, monitors }
         }
     })

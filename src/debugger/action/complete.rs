@@ -84,10 +84,12 @@ impl ActionEntry {
     fn candidates(&self, before: &str, context: &Context) -> Vec<String> {
         let given = before.split_whitespace().count() - 1;
         let nodes = || context.model.into_iter().flat_map(names).map(String::from);
-        let modes = Mode::NAMES.map(String::from);
+        let all =
+            |words: &[&str]| -> Vec<String> { words.iter().map(|word| word.to_string()).collect() };
+        let modes = all(&Mode::NAMES);
         match (&self.verb, given) {
             (Verb::Force { .. }, 0) => modes.into_iter().chain(nodes()).collect(),
-            (Verb::Force { .. }, 1) => modes.into(),
+            (Verb::Force { .. }, 1) => modes,
             (Verb::Release | Verb::Node, 0) => nodes().collect(),
             (Verb::Census, _) => nodes().collect(),
             (Verb::Branch(None) | Verb::Compare, 0) => {
@@ -96,24 +98,21 @@ impl ActionEntry {
                 let labels = branches.iter().map(|branch| branch.label.clone());
                 numbers.chain(labels).collect()
             }
-            (Verb::Break, 0) => CONDITIONS.map(String::from).into(),
+            (Verb::Break, 0) => all(&CONDITIONS),
             (Verb::Break, _) => {
                 let any = || std::iter::once("any".into()).chain(nodes());
                 match (before.split_whitespace().nth(1), given) {
                     (Some("mode" | "leaves"), 1) => modes.into_iter().chain(any()).collect(),
-                    (Some("mode" | "leaves"), 2) => modes.into(),
+                    (Some("mode" | "leaves"), 2) => modes,
                     (Some("margin" | "element"), 1) => any().collect(),
                     _ => Vec::new(),
                 }
             }
             (Verb::Delete | Verb::Enable { .. }, 0) => vec!["all".into()],
-            (Verb::Watch, 0) => WatchQuantity::NAMES.map(String::from).into(),
+            (Verb::Watch, 0) => all(&WatchQuantity::NAMES),
             (Verb::Watch, 1) => nodes().chain(std::iter::once("as".into())).collect(),
             (Verb::Set, 0) if context.offers.is_none() => set_paths(context),
-            (Verb::Set, 1) => values(before)
-                .iter()
-                .map(|value| value.to_string())
-                .collect(),
+            (Verb::Set, 1) => all(values(before)),
             (Verb::Open, 0) => context.scenes.to_vec(),
             (Verb::Help, 0) => manual::PAGES.iter().map(|page| page.topic.into()).collect(),
             (Verb::Lesson, 0) => context
@@ -121,12 +120,12 @@ impl ActionEntry {
                 .iter()
                 .map(|lesson| lesson.name.into())
                 .collect(),
-            (Verb::Predict, 0) => HiddenDecisions::NAMES.map(String::from).into(),
+            (Verb::Predict, 0) => all(&HiddenDecisions::NAMES),
             (Verb::Copy, 0) => CopyTarget::all().map(|what| what.word().into()).collect(),
-            (Verb::Colours, 0) => Colours::NAMES.map(String::from).into(),
-            (Verb::Mouse, 0) => ["on", "off"].map(String::from).into(),
-            (Verb::Sort, 0) => Sort::NAMES.map(String::from).into(),
-            (Verb::Filter, 0) => Filter::NAMES.map(String::from).into(),
+            (Verb::Colours, 0) => all(&Colours::NAMES),
+            (Verb::Mouse, 0) => all(&["on", "off"]),
+            (Verb::Sort, 0) => all(&Sort::NAMES),
+            (Verb::Filter, 0) => all(&Filter::NAMES),
             (Verb::Monitor, 0) => context
                 .model
                 .into_iter()

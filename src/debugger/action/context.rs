@@ -6,7 +6,7 @@ use super::table::{ActionEntry, begun, by_name};
 use crate::Tree;
 use stickslip_core::interface::census::MOST;
 use stickslip_core::{Capabilities, Model, State};
-use stickslip_scene::{EmbeddedFile, Scene};
+use stickslip_scene::{EmbeddedFile, Scene, few};
 
 /// What the arguments of actions can refer to.
 #[derive(Debug, Clone, Copy, Default)]
@@ -149,12 +149,7 @@ pub(super) fn names(model: &Model) -> impl Iterator<Item = &str> {
 
 /// The first few names of slave nodes, for messages.
 fn some_names(model: &Model) -> String {
-    const SHOWN: usize = 4;
-    let mut list = names(model).take(SHOWN).collect::<Vec<_>>().join(", ");
-    if model.contacts.len() > SHOWN {
-        list += ", …";
-    }
-    list
+    few(names(model), 4)
 }
 
 pub(super) fn any_or_exact(

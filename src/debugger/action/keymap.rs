@@ -12,10 +12,10 @@ use super::table::{ACTIONS, ActionEntry, Group, by_key};
 use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
 use std::collections::BTreeMap;
 use std::fmt;
-use stickslip_scene::SceneError;
 use stickslip_scene::format::error::{Path, did_you_mean, quoted};
 use stickslip_scene::format::locate::{line_and_column, locate};
 use stickslip_scene::format::read;
+use stickslip_scene::{SceneError, joined};
 
 /// Names of keys other than letters.
 const NAMED: [&str; 15] = [
@@ -208,7 +208,7 @@ impl Keymap {
             let lines: String = lines.iter().map(|line| format!("    {line}\n")).collect();
             format!("    // {}\n{lines}", group.title())
         });
-        format!("{{\n{}}}\n", groups.collect::<Vec<_>>().join("\n"))
+        format!("{{\n{}}}\n", joined(groups, "\n"))
     }
 }
 

@@ -5,6 +5,7 @@
 use super::meaning::{Page, Step, Ui};
 use super::parse_error::ParseError;
 use crate::{BranchTarget, Command, ExportScope, Unit};
+use stickslip_scene::joined;
 
 stickslip_core::words! {
     /// Heading under which help lists an action.
@@ -309,11 +310,11 @@ pub fn markdown() -> String {
     for group in Group::ALL {
         text += &format!("| {} | by name | |\n|---|---|---|\n", group.title());
         for entry in ACTIONS.iter().filter(|entry| entry.group == group) {
-            let keys: Vec<_> = entry.keys.iter().map(|key| format!("`{key}`")).collect();
+            let keys = joined(entry.keys.iter().map(|key| format!("`{key}`")), " ");
             let name = format!("{} {}", entry.name, entry.arguments);
             // In Markdown tables, a bar separates columns even in code.
             let [name, help] = [name.trim_end(), entry.help].map(|text| text.replace('|', "\\|"));
-            text += &format!("| {} | `{name}` | {help} |\n", keys.join(" "));
+            text += &format!("| {keys} | `{name}` | {help} |\n");
         }
         text.push('\n');
     }

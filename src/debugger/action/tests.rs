@@ -6,8 +6,7 @@ use crate::history::breakpoints::Condition;
 use crate::history::tree::Budget;
 use crate::{Command, ExportScope, Tree, Unit, Watch, WatchQuantity};
 use std::path::PathBuf;
-use stickslip_core::model::{Contact, Node};
-use stickslip_core::{Friction, Mode, Model};
+use stickslip_core::{Contact, Friction, Mode, Model, Node};
 use stickslip_scene::Scene;
 
 fn model() -> Model {

@@ -1,7 +1,7 @@
 //! Describes how far round-off limits the accuracy of a scene.
 
 use stickslip_core::{Event, Norms, Rule, Test, TestedQuantity};
-use stickslip_scene::number::{sig2, sig4};
+use stickslip_scene::{sig2, sig4};
 
 /// Describes the accuracy that round-off permits; `None` if it is sufficient.
 pub fn left(norms: &Norms) -> Option<String> {

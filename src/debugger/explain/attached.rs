@@ -5,7 +5,7 @@
 //! numbers of the solver's scene.
 
 use super::cone_problem;
-use super::examination::{DONE, Examination, census, examine_nodes, frozen};
+use super::examination::{DONE, Examination, census, examine_nodes, frozen, nothing};
 use super::facts::{Fact, Part};
 use super::interface_scene::stepper;
 use super::walk::{ReportedIterations, walk};
@@ -26,12 +26,8 @@ pub fn examine(
     contacts: &[usize],
     stop: &dyn Fn() -> bool,
 ) -> Examination {
-    let describe = |line: String| Examination {
-        head: line,
-        ..Examination::default()
-    };
     if state.status == Status::Finished {
-        return describe(DONE.into());
+        return nothing(DONE);
     }
     if posed.tangents == 2 {
         return cone_problem::examine(model, posed, stop);
@@ -44,7 +40,9 @@ pub fn examine(
     let mut stepper = match stepper(asked) {
         Ok((_, stepper)) => stepper,
         Err(why) => {
-            return describe(format!("The reported interface problem is invalid: {why}."));
+            return nothing(&format!(
+                "The reported interface problem is invalid: {why}."
+            ));
         }
     };
     let start = stepper.state().clone();

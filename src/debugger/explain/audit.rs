@@ -7,52 +7,46 @@
 
 use stickslip_core::contact::closest_points::place;
 use stickslip_core::fem::deformation::deformation;
-use stickslip_core::model::{BodyKind, Solid};
-use stickslip_core::plane::{dot, minus};
+use stickslip_core::plane::distance_to_segment;
 use stickslip_core::step::judged::{self, ReferenceSizes};
 use stickslip_core::{
-    Event, Finding, JudgedLaw, Model, Outcome, PointDeformation, Solver, Stepper, SurfaceElement,
-    Verdict,
+    Event, Finding, JudgedLaw, Model, Outcome, PointDeformation, Solid, Solver, Stepper,
+    SurfaceElement, Verdict,
 };
 
 /// Number of points per edge of an outline, for the search for nodes inside it.
 const POINTS: usize = 8;
 
-/// A finding and its increment.
+/// A finding, by default the worst violation of a contact law, and its increment.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct WorstFinding {
+pub struct WorstFinding<T = Finding> {
     /// Increment number, from 1.
     pub increment: u32,
     /// Load factor λ at the end of the increment.
     pub load_factor: f64,
-    /// The worst violation of a contact law in it.
-    pub finding: Finding,
+    /// What was found in it.
+    pub finding: T,
+}
+
+impl<T> WorstFinding<T> {
+    fn new(event: &Event, finding: T) -> WorstFinding<T> {
+        WorstFinding {
+            increment: event.position.increment,
+            load_factor: event.load_factor,
+            finding,
+        }
+    }
 }
 
 /// A master node inside a slave's body.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PenetratingMaster {
-    /// Increment number, from 1.
-    pub increment: u32,
-    /// Load factor λ at the end of the increment.
-    pub load_factor: f64,
     /// Number of the node in the scene.
     pub node: usize,
     /// Number of the body in the model, from 0.
     pub body: usize,
     /// Distance from the outline (length).
     pub depth: f64,
-}
-
-/// A point of a solid.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct StretchFinding {
-    /// Increment number, from 1.
-    pub increment: u32,
-    /// Load factor λ at the end of the increment.
-    pub load_factor: f64,
-    /// Deformation at the point.
-    pub point: PointDeformation,
 }
 
 /// The audit of a history.
@@ -70,11 +64,11 @@ pub struct Audit {
     /// The increment in which friction produced the most work.
     pub work: Option<WorstFinding>,
     /// The master node deepest inside a slave's body.
-    pub inside: Option<PenetratingMaster>,
+    pub inside: Option<WorstFinding<PenetratingMaster>>,
     /// The smallest principal stretch of the solids.
-    pub stretch: Option<StretchFinding>,
+    pub stretch: Option<WorstFinding<PointDeformation>>,
     /// The first point outside the range of its material law.
-    pub outside: Option<StretchFinding>,
+    pub outside: Option<WorstFinding<PointDeformation>>,
 }
 
 impl Audit {
@@ -87,40 +81,22 @@ impl Audit {
             return;
         };
         self.add(event, verdict, marked.is_some());
-        let found = |finding: Finding| WorstFinding {
-            increment: event.position.increment,
-            load_factor: event.load_factor,
-            finding,
-        };
-        keep_worse(&mut self.work, verdict.work.map(found));
+        let work = verdict.work.map(|work| WorstFinding::new(event, work));
+        keep_worse(&mut self.work, work);
         if let Some(found) = deformation(stepper.model(), &state.start.u) {
-            let stretched = |point: PointDeformation| StretchFinding {
-                increment: event.position.increment,
-                load_factor: event.load_factor,
-                point,
-            };
+            let stretched = |point: PointDeformation| WorstFinding::new(event, point);
             let least = self
                 .stretch
-                .map_or(f64::INFINITY, |known| known.point.stretch);
+                .map_or(f64::INFINITY, |known| known.finding.stretch);
             if found.smallest.stretch < least {
                 self.stretch = Some(stretched(found.smallest));
             }
             self.outside = self.outside.or(found.outside.map(stretched));
         }
+        let most = self.inside.map_or(0.0, |inside| inside.finding.depth);
         let deepest = deepest(stepper.model(), &state.start.u);
-        if let Some((node, body, depth)) = deepest
-            && self
-                .inside
-                .as_ref()
-                .is_none_or(|inside| depth > inside.depth)
-        {
-            self.inside = Some(PenetratingMaster {
-                increment: event.position.increment,
-                load_factor: event.load_factor,
-                node,
-                body,
-                depth,
-            });
+        if let Some(deepest) = deepest.filter(|deepest| deepest.depth > most) {
+            self.inside = Some(WorstFinding::new(event, deepest));
         }
     }
 
@@ -146,11 +122,7 @@ impl Audit {
         };
         let all = verdict.worst.iter().chain(&verdict.bonds);
         for (worst, finding) in worst.iter_mut().zip(all) {
-            let found = finding.map(|finding| WorstFinding {
-                increment: event.position.increment,
-                load_factor: event.load_factor,
-                finding,
-            });
+            let found = finding.map(|finding| WorstFinding::new(event, finding));
             keep_worse(worst, found);
         }
     }
@@ -183,17 +155,12 @@ fn keep_worse(worst: &mut Option<WorstFinding>, found: Option<WorstFinding>) {
     }
 }
 
-/// The node of a master surface deepest inside a solid with slave nodes: node, body, depth.
-fn deepest(model: &Model, u: &[f64]) -> Option<(usize, usize, f64)> {
-    let now: Vec<[f64; 2]> = model
-        .nodes
-        .iter()
-        .zip(&model.dofs.first)
-        .map(|(node, &first)| [node.at[0] + u[first], node.at[1] + u[first + 1]])
-        .collect();
-    let mut deepest: Option<(usize, usize, f64)> = None;
+/// The node of a master surface deepest inside a solid with slave nodes.
+fn deepest(model: &Model, u: &[f64]) -> Option<PenetratingMaster> {
+    let now = model.places(u);
+    let mut deepest: Option<PenetratingMaster> = None;
     for (number, body) in model.bodies.iter().enumerate() {
-        let BodyKind::Solid(solid) = &body.kind else {
+        let Some(solid) = body.solid() else {
             continue;
         };
         let slaves: Vec<_> = model
@@ -215,8 +182,12 @@ fn deepest(model: &Model, u: &[f64]) -> Option<(usize, usize, f64)> {
         let outline = outline(solid, &now);
         for node in masters {
             let depth = depth(&outline, now[node]);
-            if depth > deepest.map_or(0.0, |(.., most)| most) {
-                deepest = Some((node, number, depth));
+            if depth > deepest.map_or(0.0, |deepest| deepest.depth) {
+                deepest = Some(PenetratingMaster {
+                    node,
+                    body: number,
+                    depth,
+                });
             }
         }
     }
@@ -247,20 +218,9 @@ fn depth(outline: &[[[f64; 2]; 2]], point: [f64; 2]) -> f64 {
         } else if a[1] > point[1] && b[1] <= point[1] && side < 0.0 {
             turns -= 1;
         }
-        nearest = nearest.min(distance(*a, *b, point));
+        nearest = nearest.min(distance_to_segment(point, *a, *b));
     }
     if turns == 0 { 0.0 } else { nearest }
-}
-
-/// Distance of a point from a segment.
-fn distance(a: [f64; 2], b: [f64; 2], point: [f64; 2]) -> f64 {
-    let along = minus(b, a);
-    let to = minus(point, a);
-    let squared = dot(along, along);
-    let part = dot(to, along) / squared.max(f64::MIN_POSITIVE);
-    let part = part.clamp(0.0, 1.0);
-    let off = [to[0] - part * along[0], to[1] - part * along[1]];
-    dot(off, off).sqrt()
 }
 
 #[cfg(test)]

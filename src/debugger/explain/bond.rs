@@ -1,8 +1,7 @@
 //! Describes the contact law of a slave node's pair, with its numbers.
 
-use stickslip_core::ContactRecord;
-use stickslip_core::model::{Bond, Contact};
-use stickslip_scene::number::sig4;
+use stickslip_core::{Bond, Contact, ContactRecord};
+use stickslip_scene::sig4;
 
 /// The name of the law.
 pub fn name(contact: &Contact) -> &'static str {

@@ -2,9 +2,8 @@
 
 use super::outline::Point;
 use std::collections::{BTreeMap, BTreeSet};
-use stickslip_core::Model;
-use stickslip_core::model::{BodyKind, Component};
 use stickslip_core::plane::{dot, minus};
+use stickslip_core::{BodyKind, Component, Model};
 
 /// What an arrow or a turn stands for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

@@ -1,6 +1,6 @@
 //! Analyses the interface problem that an attached solver in space reports: one state that obeys all laws, and who moved whom.
 
-use super::examination::Examination;
+use super::examination::{Examination, nothing};
 use super::facts::{Fact, Part};
 use super::influence::{Influence, NodePush};
 use super::names;
@@ -8,25 +8,21 @@ use std::sync::Arc;
 use stickslip_core::interface::cone::{self, ConeContact};
 use stickslip_core::interface::cone_census;
 use stickslip_core::{ContactRecord, Event, Mode, Model, ReportedProblem};
-use stickslip_scene::number::sig4;
+use stickslip_scene::sig4;
 
 /// Maximum number of contacts, because the matrix is dense.
 const MOST: usize = 500;
 
 /// Searches consistent states of the problem that is solved next. Stops early if `stop` returns true.
 pub fn examine(model: &Model, posed: &ReportedProblem, stop: &dyn Fn() -> bool) -> Examination {
-    let describe = |head: String| Examination {
-        head,
-        ..Examination::default()
-    };
     let count = posed.contacts.len();
     if count > MOST {
-        return describe(format!(
+        return nothing(&format!(
             "The interface problem has {count} contacts; problems in space are examined up to {MOST}."
         ));
     }
     let Some((w, q)) = posed.compliance() else {
-        return describe("The reported stiffness is singular.".into());
+        return nothing("The reported stiffness is singular.");
     };
     let mut states: Vec<_> = cone::solve(&w, &q, &posed.friction).into_iter().collect();
     let is_unique = !states.is_empty() && cone_census::is_unique(&w, &posed.friction);
@@ -66,7 +62,7 @@ pub fn examine(model: &Model, posed: &ReportedProblem, stop: &dyn Fn() -> bool) 
     }));
     Examination {
         facts: Fact::all(Part::Census, lines),
-        ..describe(head)
+        ..nothing(&head)
     }
 }
 

@@ -3,21 +3,20 @@
 use crate::explain::names::{mode, slave};
 use stickslip_core::step::major_history::Stop;
 use stickslip_core::{Cycle, MajorCycle, Mode, Model};
-use stickslip_scene::shown::first_of;
+use stickslip_scene::{first_of, joined};
 
 /// Maximum number of nodes named in a cycle.
 const MOST_NODES: usize = 6;
 
 /// A sequence of modes in words; long runs are counted.
 pub fn pattern(words: &[&str]) -> String {
-    words
-        .chunk_by(|a, b| a == b)
-        .map(|stay| match stay {
+    joined(
+        words.chunk_by(|a, b| a == b).map(|stay| match stay {
             [word, _, _, ..] => format!("{word} ({} times)", stay.len()),
             _ => stay.join(" → "),
-        })
-        .collect::<Vec<_>>()
-        .join(" → ")
+        }),
+        " → ",
+    )
 }
 
 /// Maximum number of stops named per node in a cycle of major iterations.

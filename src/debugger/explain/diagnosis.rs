@@ -9,13 +9,11 @@ use stickslip_core::interface::census::{self, Census, MOST, MOST_SEARCHED, searc
 use stickslip_core::interface::problem::Condition;
 use stickslip_core::model::SlipCount;
 use stickslip_core::strategy::method;
-use stickslip_core::words;
 use stickslip_core::{
     AssumedMode, BoundUpdate, ContactRecord, ContactState, Cycle, InterfaceProblem, Mode, Model,
-    NodeAnswer, Rule, TestedQuantity, Trials,
+    NodeAnswer, Rule, TestedQuantity, Trials, words,
 };
-use stickslip_scene::number::sig4;
-use stickslip_scene::shown::{aligned, first_of};
+use stickslip_scene::{aligned, first_of, joined, sig4};
 
 /// Maximum number of nodes of a diagnosed problem: each iteration of its cycle requires dense solves of twice
 /// that size. A larger scene is reduced to the nodes that take part in the cycle ([`cycling`]).
@@ -583,13 +581,15 @@ pub(super) fn census_words<'a>(census: &Census, name: &impl Fn(usize) -> &'a str
         )),
     }
     for (number, found) in census.answers.iter().enumerate().take(MOST_TOLD) {
-        let nodes: Vec<String> = found
-            .answer
-            .nodes
-            .iter()
-            .enumerate()
-            .map(|(place, node)| format!("{} {}", name(place), answer_words(node)))
-            .collect();
+        let nodes = joined(
+            found
+                .answer
+                .nodes
+                .iter()
+                .enumerate()
+                .map(|(place, node)| format!("{} {}", name(place), answer_words(node))),
+            ", ",
+        );
         let margin = found
             .answer
             .worst()
@@ -606,11 +606,7 @@ pub(super) fn census_words<'a>(census: &Census, name: &impl Fn(usize) -> &'a str
             [] => String::new(),
             ties => format!(" (tie: same as {})", ties.join(", ")),
         };
-        lines.push(format!(
-            "  {}: {}{ties}{margin}",
-            number + 1,
-            nodes.join(", ")
-        ));
+        lines.push(format!("  {}: {}{ties}{margin}", number + 1, nodes));
     }
     if count > MOST_TOLD {
         lines.push(format!("  and {} more", count - MOST_TOLD));
@@ -649,11 +645,7 @@ fn differing<'a>(census: &Census, name: &impl Fn(usize) -> &'a str) -> Vec<Strin
                 _ => format!("{does} in {}, F_n {f_n}, F_t {f_t}", number + 1),
             }
         });
-        lines.push(format!(
-            "  {}: {}",
-            name(place),
-            each.collect::<Vec<_>>().join("; ")
-        ));
+        lines.push(format!("  {}: {}", name(place), joined(each, "; ")));
     }
     lines
 }

@@ -12,6 +12,7 @@ use stickslip_core::interface::uniqueness::uniqueness;
 use stickslip_core::step::intervene::Start;
 use stickslip_core::strategy::method;
 use stickslip_core::{Cycle, Failure, InterfaceProblem, Model, State, Status, Stepper, Trials};
+use stickslip_scene::joined;
 
 /// Shown at the end of the history.
 pub const DONE: &str = "The history is complete, so there is no next problem.";
@@ -189,11 +190,7 @@ pub fn examine_nodes(
         return nothing("With all other nodes frozen, the interface problem is singular.");
     };
     let model = stepper.model();
-    let names = slaves
-        .iter()
-        .map(|&slave| names::slave(model, slave))
-        .collect::<Vec<_>>()
-        .join(", ");
+    let names = joined(slaves.iter().map(|&slave| names::slave(model, slave)), ", ");
     let head = format!("For {names}, with all other nodes frozen:");
     counted(model, &studied, &head, stop)
 }

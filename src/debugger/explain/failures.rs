@@ -7,11 +7,9 @@ use crate::explain::names::slave;
 use crate::explain::strain;
 use stickslip_core::interface::census;
 use stickslip_core::linear::singular::LooseMotion;
-use stickslip_core::model::Contact;
-use stickslip_core::words::{counted, times};
-use stickslip_core::{Failure, Model, Norms, NotFound, RigidMotion, Singular};
-use stickslip_scene::number::{sig2, sig4};
-use stickslip_scene::shown::first_of;
+use stickslip_core::words::times;
+use stickslip_core::{Contact, Failure, Model, Norms, NotFound, RigidMotion, Singular, counted};
+use stickslip_scene::{first_of, joined, sig2, sig4};
 
 /// Maximum number of nodes or motions named.
 const MOST_NODES: usize = 6;
@@ -162,8 +160,8 @@ fn body_motions(motions: &[RigidMotion]) -> String {
         };
         format!("{verb}({}, {})", rounded(x), rounded(y))
     });
-    let each: Vec<String> = each.collect();
-    format!("body {} can {}", motions[0].body, each.join(" and "))
+    let each = joined(each, " and ");
+    format!("body {} can {}", motions[0].body, each)
 }
 
 /// Four decimals without trailing zeros: coordinates for people.

@@ -4,8 +4,7 @@ use super::failures;
 use super::names::slave;
 use stickslip_core::words::times;
 use stickslip_core::{Failure, Model, State};
-use stickslip_scene::number::shortest;
-use stickslip_scene::shown::first_of;
+use stickslip_scene::{first_of, shortest};
 
 /// Maximum number of nodes named.
 const MOST: usize = 3;

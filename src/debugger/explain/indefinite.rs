@@ -11,7 +11,7 @@ use stickslip_core::interface::lemke::{Lemke, PathEnd, STARTS};
 use stickslip_core::interface::problem::Answer;
 use stickslip_core::strategy::{in_force, method, rungs};
 use stickslip_core::{AssumedMode, InterfaceProblem, Strategy, Trials};
-use stickslip_scene::number::sig4;
+use stickslip_scene::{joined, sig4};
 
 /// Negative eigenvalues up to this fraction of the largest one may be due to rounding.
 const SMALL: f64 = 1e-2;
@@ -292,11 +292,12 @@ fn does<'a>(answer: &Answer, name: &impl Fn(usize) -> &'a str) -> String {
     if answer.nodes.len() > MOST_NAMED {
         return answer.letters();
     }
-    answer
-        .nodes
-        .iter()
-        .enumerate()
-        .map(|(place, node)| format!("{} {}", name(place), answer_words(node)))
-        .collect::<Vec<_>>()
-        .join(", ")
+    joined(
+        answer
+            .nodes
+            .iter()
+            .enumerate()
+            .map(|(place, node)| format!("{} {}", name(place), answer_words(node))),
+        ", ",
+    )
 }

@@ -3,11 +3,11 @@
 
 use super::names;
 use std::sync::Arc;
-use stickslip_core::model::InitialState;
-use stickslip_core::{Mode, Model, ReportedForm, ReportedProblem, State, Stepper, Strategy};
+use stickslip_core::{
+    InitialState, Mode, Model, ReportedForm, ReportedProblem, State, Stepper, Strategy,
+};
 use stickslip_scene::format::condensed::{Contact, Matrix, Problem};
-use stickslip_scene::limits;
-use stickslip_scene::{Scene, SceneError};
+use stickslip_scene::{Scene, SceneError, limits};
 
 /// The scene of a reported problem, starting with the modes of a state.
 pub fn problem(model: &Model, state: &State, posed: &ReportedProblem) -> Problem {
@@ -51,7 +51,7 @@ pub fn problem(model: &Model, state: &State, posed: &ReportedProblem) -> Problem
         free: free.collect(),
         spacing: None,
         history: Default::default(),
-        settings: stickslip_core::model::Settings {
+        settings: stickslip_core::Settings {
             strategy: Strategy::Table2,
             ..Default::default()
         },

@@ -1,7 +1,7 @@
 //! Describes jumps to another branch of equilibrium, and loss of stability.
 
 use stickslip_core::{Event, Model, Stability, StabilityLoss};
-use stickslip_scene::number::{shortest, sig2, sig4};
+use stickslip_scene::{shortest, sig2, sig4};
 
 /// The motions that lead away from an unstable state.
 pub fn leads_away(stability: Stability) -> String {

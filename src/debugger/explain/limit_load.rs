@@ -24,16 +24,14 @@ use super::{names, strain};
 use std::collections::HashSet;
 use std::ops::ControlFlow;
 use std::sync::Arc;
-use stickslip_core::model::{Body, BodyKind, SearchMode};
 use stickslip_core::plane::max_abs;
 use stickslip_core::step::arc_state::Change;
-use stickslip_core::words::counted;
 use stickslip_core::{
-    ContactRecord, Failure, Intervention, Mode, Model, Outcome, PointDeformation, RigidMotion,
-    RunEnd, Settings, Singular, State, Stepper, Strategy, Until, strategy,
+    Body, BodyKind, ContactRecord, Failure, Intervention, Mode, Model, Outcome, PointDeformation,
+    RigidMotion, RunEnd, SearchMode, Settings, Singular, State, Stepper, Strategy, Until, counted,
+    strategy,
 };
-use stickslip_scene::number::{sig4, sig6};
-use stickslip_scene::shown::first_of;
+use stickslip_scene::{first_of, sig4, sig6};
 
 /// Fraction of the friction or of the contact forces below which nothing is left.
 const LEFT: f64 = 1e-2;

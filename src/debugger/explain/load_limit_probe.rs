@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 use stickslip_core::{
     Failure, Intervention, Model, MotionEvent, Outcome, RunEnd, Singular, State, Stepper, Until,
 };
-use stickslip_scene::number::{shortest, sig2, sig6};
+use stickslip_scene::{shortest, sig2, sig6};
 
 /// Smallest step, as a fraction of the increment.
 const FINEST: f64 = 1.0 / 4096.0;

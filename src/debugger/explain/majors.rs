@@ -8,10 +8,10 @@ use super::names::{mode, slave};
 use stickslip_core::model::{Geometry, ResidualMethod};
 use stickslip_core::plane::{cross, distance, dot};
 use stickslip_core::step::major_history::Stop;
-use stickslip_core::words::counted;
-use stickslip_core::{MajorCycle, Mode, Model, Settings, State, SurfaceElement, SurfacePoint};
-use stickslip_scene::number::{sig2, sig4};
-use stickslip_scene::shown::first_of;
+use stickslip_core::{
+    MajorCycle, Mode, Model, Settings, State, SurfaceElement, SurfacePoint, counted,
+};
+use stickslip_scene::{first_of, joined, sig2, sig4};
 
 /// Maximum number of cycle members described.
 const MOST_NODES: usize = 2;
@@ -203,13 +203,13 @@ fn moved(model: &Model, around: &[Major], node: usize) -> f64 {
 fn residuals(attempt: &Attempt) -> Option<Fact> {
     let errors = attempt.errors();
     let from = errors.len().saturating_sub(MOST_RESIDUALS);
-    let shown: Vec<String> = errors[from..].iter().map(|&e| sig2(e)).collect();
+    let shown = joined(errors[from..].iter().map(|&e| sig2(e)), ", ");
     (!shown.is_empty()).then(|| {
         let text = format!(
             "residual after major {} to {}: {}",
             from + 1,
             errors.len(),
-            shown.join(", ")
+            shown
         );
         Fact::new(Part::Rates, text)
     })

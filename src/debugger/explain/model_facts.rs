@@ -4,7 +4,7 @@ use super::conditions::{Support, supports};
 use super::round_off::reach;
 use std::collections::HashMap;
 use stickslip_core::Model;
-use stickslip_core::model::{Body, BodyKind, SolidElement};
+use stickslip_core::model::{Body, SolidElement};
 use stickslip_core::plane::minus;
 
 /// Facts about a model.
@@ -43,10 +43,7 @@ impl ModelFacts {
 
 /// The elements of a body if it is a solid.
 pub fn solid_elements(body: &Body) -> &[SolidElement] {
-    match &body.kind {
-        BodyKind::Solid(solid) => &solid.elements,
-        _ => &[],
-    }
+    body.solid().map_or(&[], |solid| &solid.elements)
 }
 
 /// Two opposite corners of an element, or a corner of a triangle and the next but one.

@@ -4,10 +4,9 @@
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
-use stickslip_core::model::Jumps;
 use stickslip_core::plane::distance;
-use stickslip_core::{Model, MotionEvent, Outcome, RunEnd, State, Stepper, Until};
-use stickslip_scene::number::{sig2, sig4, sig6};
+use stickslip_core::{Jumps, Model, MotionEvent, Outcome, RunEnd, State, Stepper, Until};
+use stickslip_scene::{sig2, sig4, sig6};
 
 /// Displacement from which the motion has left the equilibrium, relative to the scene's length.
 const FAR: f64 = 0.01;

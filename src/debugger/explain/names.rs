@@ -2,7 +2,7 @@
 
 use stickslip_core::step::intervene::Start;
 use stickslip_core::{Mode, Model, Position, Rule};
-use stickslip_scene::number::shortest;
+use stickslip_scene::{few, shortest};
 
 /// Name of a slave node.
 pub fn slave(model: &Model, slave: usize) -> &str {
@@ -29,19 +29,16 @@ pub fn status(model: &Model, of: Mode) -> &'static str {
 /// Arrows by eighths of a turn, anticlockwise from the right.
 pub const ARROWS: [&str; 8] = ["→", "↗", "↑", "↖", "←", "↙", "↓", "↘"];
 
-/// The arrow of a direction in degrees.
-pub fn arrow(degrees: i16) -> &'static str {
-    let eighth = (f64::from(degrees) / 45.0).round().rem_euclid(8.0);
-    ARROWS[eighth as usize % ARROWS.len()]
+/// The arrow of a direction in radians.
+pub fn arrow(angle: f64) -> &'static str {
+    let eighth = (angle / std::f64::consts::FRAC_PI_4).round();
+    ARROWS[eighth.rem_euclid(8.0) as usize % ARROWS.len()]
 }
 
-/// Initial modes of slave nodes, in words.
-pub fn starts(model: &Model, starts: &[Start]) -> String {
-    starts
-        .iter()
-        .map(|start| format!("{} {}", slave(model, start.slave), mode(start.mode)))
-        .collect::<Vec<_>>()
-        .join(", ")
+/// Initial modes of slave nodes, in words; an ellipsis stands for further ones.
+pub fn starts(model: &Model, starts: &[Start], most: usize) -> String {
+    let words = |start: &Start| format!("{} {}", slave(model, start.slave), mode(start.mode));
+    few(starts.iter().map(words), most)
 }
 
 /// Modes in the order of Table 2's rows and columns.

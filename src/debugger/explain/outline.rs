@@ -2,9 +2,8 @@
 //! visible extent, and clipping.
 
 use stickslip_core::fem::lagrange;
-use stickslip_core::model::{Body, BodyKind};
 use stickslip_core::plane::minus;
-use stickslip_core::{Event, Model, SurfaceElement};
+use stickslip_core::{Body, BodyKind, Event, Model, SurfaceElement};
 
 /// A point in the scene or on the sheet.
 pub type Point = [f64; 2];
@@ -275,7 +274,8 @@ pub fn magnification<'a>(model: &Model, displacements: impl Iterator<Item = &'a 
 /// Length of a node's displacement.
 pub fn displacement(model: &Model, u: &[f64], node: usize) -> f64 {
     let (at, now) = (model.at_in_space(node), model.place_in_space(u, node));
-    (now[0] - at[0]).hypot(now[1] - at[1]).hypot(now[2] - at[2])
+    let [x, y, z] = [0, 1, 2].map(|axis| now[axis] - at[axis]);
+    (x * x + y * y + z * z).sqrt()
 }
 
 /// Position of a node with its displacement magnified.

@@ -26,12 +26,13 @@ use super::rigid_motion::loose;
 use super::strain::MaterialCause;
 use super::try_list::{self, TryLine, TryOutcome, helps};
 use stickslip_core::interface::census::MOST;
-use stickslip_core::model::{Body, BodyKind, FinishedRun, InitialGaps};
-use stickslip_core::words::counted;
-use stickslip_core::{Failure, Model, Norms, NotFound, Singular, State, Status, Stepper};
-use stickslip_scene::Spec;
+use stickslip_core::model::FinishedRun;
+use stickslip_core::{
+    Body, BodyKind, Failure, InitialGaps, Model, Norms, NotFound, Singular, State, Status, Stepper,
+    counted,
+};
 use stickslip_scene::gaps::turned;
-use stickslip_scene::number::{sig2, sig4};
+use stickslip_scene::{Spec, sig2, sig4};
 
 /// Shown if the first increment fails and nodes start inside their surface.
 const OVERLAP: &str = "nodes start inside their surface; settings.initial_gaps=ramp moves them out over the first leg of the path, adjust moves them onto the surface";
@@ -463,7 +464,7 @@ impl PageBuilder {
 
     /// The first strategy's failure in this major iteration, before the ladder continued.
     fn explain_first(&mut self, model: &Model, first: &Failure) {
-        let members: &[(usize, Vec<stickslip_core::model::Mode>)] = match first {
+        let members: &[(usize, Vec<stickslip_core::Mode>)] = match first {
             Failure::Cycle(cycle) => &cycle.members,
             _ => &[],
         };

@@ -1,14 +1,13 @@
 //! What the matrix of a frozen problem proves: that there is at most one consistent state, and the limit of
 //! T_max while the modes repeat.
 
-use stickslip_core::InterfaceProblem;
 use stickslip_core::interface::census::{Census, MOST_SEARCHED};
 use stickslip_core::interface::family::{Family, families};
 use stickslip_core::interface::t_max_iteration::{TMaxIteration, TMaxLimit, spiral};
 use stickslip_core::interface::uniqueness::{Inapplicable, Uniqueness};
 use stickslip_core::strategy::method;
-use stickslip_core::words::counted;
-use stickslip_scene::number::sig4;
+use stickslip_core::{InterfaceProblem, counted};
+use stickslip_scene::{joined, sig4};
 
 /// Number of minor iterations used to follow T_max.
 const AHEAD: usize = 200;
@@ -171,14 +170,15 @@ pub fn cycle_words<'a>(
 
 /// The fixed point of T_max at the first nodes.
 fn fixed_words<'a>(found: &TMaxIteration, name: &impl Fn(usize) -> &'a str) -> Option<String> {
-    let text = found
-        .places
-        .iter()
-        .zip(&found.fixed)
-        .take(MOST_NAMED)
-        .map(|(&place, &t_max)| format!("{} at {}", sig4(t_max), name(place)))
-        .collect::<Vec<_>>()
-        .join(", ");
+    let text = joined(
+        found
+            .places
+            .iter()
+            .zip(&found.fixed)
+            .take(MOST_NAMED)
+            .map(|(&place, &t_max)| format!("{} at {}", sig4(t_max), name(place))),
+        ", ",
+    );
     let more = match found.places.len().saturating_sub(MOST_NAMED) {
         0 => String::new(),
         more => format!(", and {}", counted(more, "more node")),

@@ -9,15 +9,14 @@ use super::examination::Examination;
 use super::names;
 use super::strain::{self, MaterialCause};
 use stickslip_core::contact::projection::projection_at;
-use stickslip_core::model::{
-    AtCycle, Geometry, InitialGaps, Jumps, ResidualMethod, SearchMode, Sticking, Touch,
-};
-use stickslip_core::step::intervene::{Start, Value};
+use stickslip_core::model::{AtCycle, Geometry, ResidualMethod, Sticking};
+use stickslip_core::step::intervene::Value;
 use stickslip_core::{
-    BoundUpdate, Failure, Intervention, Mode, Model, Parameter, Settings, State, Strategy,
+    BoundUpdate, Failure, InitialGaps, Intervention, Jumps, Mode, Model, Parameter, SearchMode,
+    Settings, State, Strategy, Touch,
 };
 use stickslip_scene::gaps::{StartGaps, start_gaps, turned};
-use stickslip_scene::number;
+use stickslip_scene::{joined, number};
 
 /// Factor by which iteration limits are raised.
 const MORE: u32 = 10;
@@ -111,11 +110,12 @@ impl RemedyInput {
                 format!(":increment {}", number::shortest(*size))
             }
             RemedyInput::StartFrom(answer) => format!(":start-from {}", answer + 1),
-            RemedyInput::Restart(changes) => changes
-                .iter()
-                .map(|(path, value)| format!("--set {path}={value}"))
-                .collect::<Vec<_>>()
-                .join(" "),
+            RemedyInput::Restart(changes) => joined(
+                changes
+                    .iter()
+                    .map(|(path, value)| format!("--set {path}={value}")),
+                " ",
+            ),
             RemedyInput::Listed => "r, then select it and press Enter".into(),
         }
     }
@@ -281,14 +281,10 @@ impl Remedy {
         let count = found.census.as_ref().map_or(0, |c| c.answers.len());
         let answer = |number: usize| {
             let starts = found.starts(number)?;
-            const SHOWN: usize = 2;
-            let name =
-                |s: &Start| format!("{} {}", names::slave(model, s.slave), names::mode(s.mode));
-            let some: Vec<String> = starts.iter().take(SHOWN).map(name).collect();
-            let more = if starts.len() > SHOWN { ", …" } else { "" };
+            let some = names::starts(model, &starts, 2);
             Some(Remedy {
                 kind: RemedyKind::Answer(number),
-                label: format!("state {}: {}{more}", number + 1, some.join(", ")),
+                label: format!("state {}: {some}", number + 1),
                 how: RemedyInput::StartFrom(number),
                 first: vec![Intervention::Assume(starts)],
             })

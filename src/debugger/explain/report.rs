@@ -8,13 +8,11 @@ use crate::explain::jumped;
 use crate::explain::names::{self, mode, position_in, slave};
 use crate::explain::strain;
 use stickslip_core::step::event::SmallerStepReason;
-use stickslip_core::words::counted;
 use stickslip_core::{
     Decision, Event, Failure, Intervention, Model, MotionEvent, Outcome, Position, Rule, Singular,
-    State, TestedQuantity,
+    State, TestedQuantity, counted,
 };
-use stickslip_scene::number::{shortest, sig2, sig4, sig6};
-use stickslip_scene::shown::first_of;
+use stickslip_scene::{first_of, joined, shortest, sig2, sig4, sig6};
 
 /// Why Table 2 decided as it did; `friction` is whether there is any.
 pub fn reason(decision: &Decision, friction: bool) -> String {
@@ -238,11 +236,11 @@ fn outcome_with(model: &Model, event: &Event, failed: fn(&Model, &Failure) -> St
                 (!residual.is_nan()).then(|| format!("residual {}", sig4(residual))),
                 (!after.limit.is_nan()).then(|| format!("limit {}", sig2(after.limit))),
             ];
-            let numbers: Vec<String> = numbers.into_iter().flatten().collect();
+            let numbers = joined(numbers.into_iter().flatten(), ", ");
             if numbers.is_empty() {
                 format!("{at}: {how}")
             } else {
-                format!("{at}: {how}; {}", numbers.join(", "))
+                format!("{at}: {how}; {numbers}")
             }
         }
         Outcome::Refused { why, .. } => format!(
@@ -451,7 +449,7 @@ pub fn intervention(model: &Model, intervention: &Intervention) -> String {
         Intervention::Assume(starts) => {
             format!(
                 "the next minor iteration starts with {}",
-                names::starts(model, starts)
+                names::starts(model, starts, usize::MAX)
             )
         }
         Intervention::Release { slave: s } => format!("{} follows Table 2 again", slave(model, *s)),

@@ -2,7 +2,7 @@
 //! when they are loose.
 
 use super::facts::{Fact, Part};
-use super::names::slave;
+use super::names::{arrow, slave};
 use std::collections::HashSet;
 use stickslip_core::contact::projection::{Projection, projection_at, tangent};
 use stickslip_core::fem::pressure::Pressures;
@@ -10,8 +10,7 @@ use stickslip_core::linear::singular::LooseMotion;
 use stickslip_core::model::Factor;
 use stickslip_core::plane::dot;
 use stickslip_core::{Mode, Model, RigidMotion, Singular, State, Stepper};
-use stickslip_scene::number::{shortest, sig4};
-use stickslip_scene::shown::first_of;
+use stickslip_scene::{first_of, shortest, sig4};
 
 /// Maximum number of motions described.
 const MOST: usize = 3;
@@ -168,12 +167,10 @@ impl<'a> BodyMotion<'a> {
 
     /// The arrow of the motion in the shape.
     fn head(&self) -> &'static str {
-        const HEADS: [&str; 8] = ["→", "↗", "↑", "↖", "←", "↙", "↓", "↘"];
-        let LooseMotion::Translation([x, y]) = self.motion else {
-            return "arrow";
-        };
-        let eighth = (self.sign * y).atan2(self.sign * x) / std::f64::consts::FRAC_PI_4;
-        HEADS[eighth.round().rem_euclid(8.0) as usize]
+        match self.motion {
+            LooseMotion::Translation([x, y]) => arrow((self.sign * y).atan2(self.sign * x)),
+            LooseMotion::Rotation(_) => "arrow",
+        }
     }
 
     /// How many contacts of the body are open, slide or stick; `still` if it is loose with these modes.

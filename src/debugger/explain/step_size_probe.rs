@@ -4,7 +4,7 @@
 use crate::explain::diagnosis::undecided;
 use stickslip_core::interface::census::census;
 use stickslip_core::{Intervention, State, Stepper};
-use stickslip_scene::number::shortest;
+use stickslip_scene::shortest;
 
 /// Maximum number of halvings of the increment.
 const HALVINGS: i32 = 6;

@@ -2,18 +2,15 @@
 //! ([`stickslip_core::fem::deformation`]).
 
 use stickslip_core::fem::deformation::{StretchRange, deformation};
-use stickslip_core::model::{BodyKind, Elastic, Law, Update};
-use stickslip_core::{Deformation, Failure, Model, PointDeformation, State};
-use stickslip_scene::number::sig4;
+use stickslip_core::{Deformation, Elastic, Failure, Law, Model, PointDeformation, State, Update};
+use stickslip_scene::sig4;
 
 /// Displacements beyond this multiple of the scene's length are meaningless as a shape.
 const LOST: f64 = 10.0;
 
 /// The material of an element: its number data and its name in the scene.
 fn material<'a>(model: &'a Model, point: &PointDeformation) -> Option<(&'a Elastic, &'a str)> {
-    let BodyKind::Solid(solid) = &model.bodies.get(point.body)?.kind else {
-        return None;
-    };
+    let solid = model.bodies.get(point.body)?.solid()?;
     let number = solid.elements.get(point.element)?.material;
     let name = solid.material_names.get(number)?;
     Some((solid.materials.get(number)?, name))

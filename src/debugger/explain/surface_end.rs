@@ -7,12 +7,12 @@
 use super::majors::slope;
 use super::names;
 use std::ops::ControlFlow;
-use stickslip_core::model::SearchMode;
 use stickslip_core::plane::{cross, dot, minus, unit};
 use stickslip_core::{
-    Intervention, Mode, Model, Outcome, RunEnd, Settings, State, Stepper, SurfaceElement, Until,
+    Intervention, Mode, Model, Outcome, RunEnd, SearchMode, Settings, State, Stepper,
+    SurfaceElement, Until,
 };
-use stickslip_scene::number::{sig4, sig6};
+use stickslip_scene::{sig4, sig6};
 
 /// Maximum distance past the end in the last equilibrium, and minimum depth behind it, relative to the scene's length.
 const NEAR: f64 = 0.02;

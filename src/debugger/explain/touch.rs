@@ -7,8 +7,9 @@
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
-use stickslip_core::model::Touch;
-use stickslip_core::{Event, Intervention, Mode, Model, Outcome, RunEnd, State, Stepper, Until};
+use stickslip_core::{
+    Event, Intervention, Mode, Model, Outcome, RunEnd, State, Stepper, Touch, Until,
+};
 
 /// Smallest reported difference of forces, relative to the largest force.
 const TOLD: f64 = 1e-4;

@@ -1,5 +1,6 @@
 //! The last iterations of one contact: its force in the Coulomb cone, and T_max as a map from the value used to the value found.
 
+use stickslip_core::plane::range;
 use stickslip_core::{Event, Friction, Mode};
 
 /// Maximum number of iterations in a trail.
@@ -117,9 +118,19 @@ impl Cone {
 /// Part of T_max below which the differences are drawn instead.
 const CLOSE: f64 = 1e-2;
 
-/// The cobweb of T_max: from the diagonal up to the value found, and across to the diagonal. If all values are close to each other,
-/// the first result is what they are less; otherwise it is 0.
-pub fn cobweb(trail: &[TrailPoint]) -> (f64, Vec<[f64; 2]>) {
+/// The cobweb of T_max: from the diagonal up to the value found, and across to the diagonal.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cobweb {
+    /// What the values of the path are less, if they are close to each other; otherwise 0.
+    pub origin: f64,
+    /// Pairs of the value used and the value found.
+    pub path: Vec<[f64; 2]>,
+    /// The range of the path with a margin; `None` if T_max does not change by more than round-off.
+    pub range: Option<[f64; 2]>,
+}
+
+/// The cobweb of a trail; `scale` is that of the forces.
+pub fn cobweb(trail: &[TrailPoint], scale: f64) -> Cobweb {
     let points = trail.iter().filter(|point| point.mode == Mode::Sliding);
     let steps: Vec<[f64; 2]> = points
         .map(|point| [point.t_max_used, point.t_max])
@@ -139,7 +150,14 @@ pub fn cobweb(trail: &[TrailPoint]) -> (f64, Vec<[f64; 2]>) {
         let [used, found] = step.map(|value| value - origin);
         [[used, used], [used, found], [found, found]]
     });
-    (origin, path.collect())
+    let path: Vec<[f64; 2]> = path.collect();
+    let [low, high] = range(path.iter().flatten().copied());
+    let margin = 0.06 * (high - low);
+    Cobweb {
+        origin,
+        range: (high - low > 1e-12 * scale).then_some([low - margin, high + margin]),
+        path,
+    }
 }
 
 /// The factor by which the change of T_max shrinks (or grows) per iteration, from the last three values; `None` if unknown.
@@ -178,9 +196,12 @@ mod tests {
             [1.0, 0.5],
             [0.5, 0.5],
         ];
-        assert_eq!(cobweb(&trail), (0.0, wanted.to_vec()));
-        let close = cobweb(&[point(1.0, 1.001)]);
-        assert_eq!((close.0, close.1[2]), (1.001, [0.0, 0.0]));
+        let web = cobweb(&trail, 1.0);
+        assert_eq!((web.origin, web.path), (0.0, wanted.to_vec()));
+        assert_eq!(web.range, Some([-0.06, 1.06]));
+        let close = cobweb(&[point(1.0, 1.001)], 1.0);
+        assert_eq!((close.origin, close.path[2]), (1.001, [0.0, 0.0]));
+        assert_eq!(cobweb(&[point(1.0, 1.0)], 1.0).range, None);
         assert_eq!(factor(&trail), Some(-0.5));
         assert_eq!(factor(&trail[..1]), None);
     }

@@ -2,8 +2,7 @@
 
 use super::remedies::{self, BUDGET, RemedyTrial, TrialEnd, compare};
 use super::remedy::{Remedy, RemedyInput};
-use stickslip_core::RunFinding;
-use stickslip_core::words::counted;
+use stickslip_core::{RunFinding, counted};
 
 /// Outcome of a line of the list.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -6,11 +6,11 @@
 
 use super::interface_scene;
 use std::sync::Arc;
-use stickslip_core::model::{SlipCount, Touch};
+use stickslip_core::model::SlipCount;
 use stickslip_core::strategy::method;
 use stickslip_core::{
     BoundUpdate, Event, InterfaceProblem, Mode, Model, Position, ReportedProblem, Settings, State,
-    Strategy, Trials,
+    Strategy, Touch, Trials,
 };
 use stickslip_scene::format::condensed::Problem;
 

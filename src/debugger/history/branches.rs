@@ -3,6 +3,7 @@
 use crate::explain::names;
 use crate::{Strip, Tree};
 use stickslip_core::{Intervention, Model};
+use stickslip_scene::joined;
 
 /// Cost of a part of the history.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -52,17 +53,17 @@ pub fn find(tree: &Tree, word: &str) -> Result<usize, NoBranch> {
         .clone()
         .filter(|&b| label(b).starts_with(word))
         .collect();
-    let list = |some: &[usize]| {
-        let names: Vec<String> = some.iter().map(|&b| name(tree, b)).collect();
-        names.join(", ")
-    };
+    let name = |b: usize| name(tree, b);
     match begun[..] {
         [found] => Ok(found),
         [] => {
-            let all: Vec<usize> = all.collect();
-            Err(NoBranch::Unknown(word.into(), list(&all)))
+            let all = joined(all.map(name), ", ");
+            Err(NoBranch::Unknown(word.into(), all))
         }
-        _ => Err(NoBranch::Ambiguous(word.into(), list(&begun))),
+        _ => {
+            let begun = joined(begun.into_iter().map(name), ", ");
+            Err(NoBranch::Ambiguous(word.into(), begun))
+        }
     }
 }
 
@@ -78,12 +79,7 @@ pub fn label(model: &Model, intervention: &Intervention, setting: Option<(&str, 
             let slave = names::slave(model, *slave);
             format!("{slave} {held}{}", names::mode(*mode))
         }
-        Intervention::Assume(starts) => {
-            const SHOWN: usize = 3;
-            let some = names::starts(model, &starts[..starts.len().min(SHOWN)]);
-            let more = if starts.len() > SHOWN { ", …" } else { "" };
-            some + more
-        }
+        Intervention::Assume(starts) => names::starts(model, starts, 3),
         Intervention::Release { slave } => format!("{} released", names::slave(model, *slave)),
         Intervention::Increment(size) => format!("increment {size}"),
         Intervention::Friction(friction) => format!("friction {}", friction.angle),

@@ -10,6 +10,7 @@ use std::fmt;
 use std::str::FromStr;
 use stickslip_core::words::noun_for;
 use stickslip_core::{Mode, Model};
+use stickslip_scene::joined;
 
 /// Condition of a breakpoint. A node is a slave number; `None` matches any node.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -282,8 +283,7 @@ fn describe(model: &Model, breakpoint: &Breakpoint) -> String {
 }
 
 fn listed<'a>(model: &Model, breakpoints: impl Iterator<Item = &'a Breakpoint>) -> String {
-    let described: Vec<String> = breakpoints.map(|b| describe(model, b)).collect();
-    described.join(", ")
+    joined(breakpoints.map(|b| describe(model, b)), ", ")
 }
 
 #[cfg(test)]

@@ -10,8 +10,7 @@ use crate::explain::names;
 use crate::history::branches::{self, Cost};
 use crate::{Frame, Strip, Tree};
 use stickslip_core::{Mode, Model, Position};
-use stickslip_scene::number::{shortest, sig2};
-use stickslip_scene::shown::first_of;
+use stickslip_scene::{first_of, shortest, sig2};
 
 /// Relative difference below which two states are the same.
 pub const SAME_STATE: f64 = 1e-7;
@@ -182,7 +181,7 @@ fn same(tree: &Tree, a: (usize, usize), b: (usize, usize)) -> Option<Sameness> {
             .state
             .nodes
             .iter()
-            .flat_map(|node| node.force())
+            .flat_map(stickslip_core::ContactState::force)
             .collect()
     };
     let (f, g) = (forces(x), forces(y));

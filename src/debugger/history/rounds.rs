@@ -11,8 +11,8 @@ use crate::explain::names;
 use std::collections::VecDeque;
 use stickslip_core::contact::record;
 use stickslip_core::interface::cycle;
-use stickslip_core::words::counted;
-use stickslip_core::{Mode, Model};
+use stickslip_core::{Mode, Model, counted};
+use stickslip_scene::joined;
 
 /// Longest period searched for.
 const LONGEST: usize = 200;
@@ -253,26 +253,21 @@ pub fn words(model: &Model, rounds: &Rounds, tells_since: bool) -> String {
             });
             format!(
                 "cycle of period {period}{since}: {}{}",
-                swing
-                    .into_iter()
-                    .chain(lines)
-                    .collect::<Vec<_>>()
-                    .join("; "),
+                joined(swing.into_iter().chain(lines), "; "),
                 more(named().count())
             )
         }
         Rounds::Irregular { members, over } => {
-            let lines: Vec<String> = members
-                .iter()
-                .take(NAMED)
-                .map(|(slave, count)| {
+            let lines = joined(
+                members.iter().take(NAMED).map(|(slave, count)| {
                     format!(
                         "{} ({})",
                         names::slave(model, *slave),
                         counted(*count, "time")
                     )
-                })
-                .collect();
+                }),
+                ", ",
+            );
             // Fewer iterations have had no time to repeat.
             let order = if *over < BACK {
                 ""
@@ -282,7 +277,7 @@ pub fn words(model: &Model, rounds: &Rounds, tells_since: bool) -> String {
             format!(
                 "changed in the last {}{order}: {}{}",
                 counted(*over, "iteration"),
-                lines.join(", "),
+                lines,
                 more(members.len())
             )
         }

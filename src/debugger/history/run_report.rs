@@ -7,10 +7,9 @@ use crate::explain::facts::{Fact, Part};
 use crate::explain::headline::brief;
 use crate::explain::strain;
 use stickslip_core::fem::deformation::deformation;
-use stickslip_core::words::{counted, noun_for};
-use stickslip_core::{Model, Outcome};
-use stickslip_scene::number::{shortest, sig4};
-use stickslip_scene::shown::first_of;
+use stickslip_core::words::noun_for;
+use stickslip_core::{Model, Outcome, counted};
+use stickslip_scene::{first_of, joined, shortest, sig4};
 
 /// Maximum number of cuts, loads and increments listed.
 const MOST: usize = 4;
@@ -143,13 +142,10 @@ fn most(
 ) -> Option<String> {
     let mut costs = costs.to_vec();
     costs.sort_by(|a, b| of(b).0.total_cmp(&of(a).0));
-    let words: Vec<String> = costs
-        .iter()
-        .take(MOST)
-        .map(|cost| {
-            let (increment, load) = (cost.increment, shortest(cost.load));
-            format!("increment {increment} at load {load} ({})", of(cost).1)
-        })
-        .collect();
-    (!words.is_empty()).then(|| format!("{what}: {}", words.join(", ")))
+    let words = |cost: &IncrementCost| {
+        let (increment, load) = (cost.increment, shortest(cost.load));
+        format!("increment {increment} at load {load} ({})", of(cost).1)
+    };
+    let words = joined(costs.iter().take(MOST).map(words), ", ");
+    (!words.is_empty()).then(|| format!("{what}: {words}"))
 }

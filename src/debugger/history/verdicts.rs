@@ -5,7 +5,7 @@ use super::compare::{self, Sameness};
 use super::strip::PointKind;
 use super::tree::Tree;
 use stickslip_core::{Cycle, Failure, Outcome, Position};
-use stickslip_scene::number::shortest;
+use stickslip_scene::shortest;
 
 /// How a branch ends so far. Branches are numbers in [`Tree::branches`].
 #[derive(Debug, Clone, PartialEq)]

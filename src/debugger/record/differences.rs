@@ -12,10 +12,8 @@ use std::collections::BTreeMap;
 use std::fmt::{self, Debug};
 use stickslip_core::linear::singular::LooseMotion;
 use stickslip_core::{Failure, Norms, Rule, Singular, Status};
-use stickslip_scene::Scene;
 use stickslip_scene::format::paths;
-use stickslip_scene::number::{sig2, sig4};
-use stickslip_scene::shown;
+use stickslip_scene::{Scene, joined, shown, sig2, sig4};
 
 /// Largest relative difference of equal numbers.
 pub const TOLERANCE: f64 = 1e-9;
@@ -378,11 +376,13 @@ fn status(status: &Status) -> String {
                 LooseMotion::Translation(_) => "moves",
                 LooseMotion::Rotation(_) => "turns",
             };
-            let all: Vec<String> = motions
-                .iter()
-                .map(|m| format!("{} {}", m.body, motion(&m.motion)))
-                .collect();
-            return format!("singular: {}", all.join(", "));
+            let all = joined(
+                motions
+                    .iter()
+                    .map(|m| format!("{} {}", m.body, motion(&m.motion))),
+                ", ",
+            );
+            return format!("singular: {all}");
         }
         other => other,
     };

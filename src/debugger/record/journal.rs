@@ -9,15 +9,12 @@
 //! A killed process leaves an incomplete last line, which is dropped and reported.
 
 use crate::Command;
-use crate::record::bits;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::fmt::Write as _;
 use std::fs::TryLockError;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use stickslip_core::State;
-use stickslip_exchange::seal::Digest;
 use stickslip_platform::disk::File;
 use stickslip_platform::input::{self, RECORD_BYTES};
 use stickslip_platform::{clock, disk, files, system};
@@ -70,7 +67,7 @@ pub struct Entry {
     pub branch: usize,
     /// Cursor afterwards: index on the branch's line, from 0.
     pub cursor: usize,
-    /// Digest of the resulting state ([`digest`]).
+    /// Digest of the resulting state ([`crate::record::state_digest`]).
     pub digest: String,
     /// Reply shown to the user.
     pub said: String,
@@ -475,33 +472,6 @@ pub fn newest() -> Result<PathBuf, JournalError> {
     let newest = entries.filter_map(|entry| written(entry.ok()?)).max();
     newest.map(|(_, path)| path).ok_or_else(none)
 }
-
-/// Start of a digest of the second version, [`bits::digest`]. The first version, without a start, is the FNV-1a hash of the RON
-/// text, in which floats are exact.
-const SECOND: &str = "2-";
-
-/// Digest of a state's bits.
-pub fn digest(state: &State) -> String {
-    match bits::digest(&state.digested()) {
-        Some(digest) => format!("{SECOND}{digest:016x}"),
-        None => NONE.into(),
-    }
-}
-
-/// Digest of a state's bits in the version of a recorded digest.
-pub fn digest_like(recorded: &str, state: &State) -> String {
-    if recorded.starts_with(SECOND) {
-        return digest(state);
-    }
-    let mut text = Digest::default();
-    match notation::line_to(&mut text, &state.digested()) {
-        Ok(()) => text.to_string(),
-        Err(error) => format!("{NONE}: {error}"),
-    }
-}
-
-/// A digest that never matches. All known states have one.
-const NONE: &str = "none";
 
 /// Seconds since 1970; 0 if the clock is set earlier.
 pub(crate) fn now() -> u64 {

@@ -13,5 +13,6 @@ pub mod differences;
 pub mod export;
 pub mod journal;
 pub mod snapshot;
+pub mod state_digest;
 pub mod story;
 pub mod table;

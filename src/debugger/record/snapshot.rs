@@ -10,10 +10,9 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use stickslip_core::step::drive::drive;
-use stickslip_core::words::counted;
 use stickslip_core::{
-    Event, Forced, Intervention, Mode, Model, Norms, Position, Rule, RunEnd, Solver, State, Status,
-    Until,
+    Event, Forced, Intervention, Mode, Model, Norms, Position, Rule, RunEnd, Solver, SolverLost,
+    State, Status, Until, counted,
 };
 use stickslip_platform::disk;
 use stickslip_platform::files::{self, FileError};
@@ -270,27 +269,11 @@ impl Snapshot {
     }
 
     fn replay_on(&self, scene: &Scene, solver: &mut dyn Solver) -> Result<Snapshot, SnapshotError> {
-        let mut applied = self.interventions.iter().peekable();
-        let mut intervene = |stepper: &mut dyn Solver, done: u64| {
-            while let Some(next) = applied.next_if(|a| a.step == done) {
-                stepper
-                    .intervene(&next.intervention)
-                    .map_err(|e| SnapshotError::Replay(format!("after step {done}: {e}")))?;
-            }
-            Ok(())
-        };
-        intervene(solver, 0)?;
         let mut done = 0;
         let until = Until::end().minors(self.steps).past_failures();
-        let end = drive(solver, until, |stepper| {
-            done += 1;
-            match intervene(stepper, done) {
-                Ok(()) => ControlFlow::Continue(()),
-                Err(error) => ControlFlow::Break(error),
-            }
-        });
+        let end = repeat(solver, &self.interventions, until, |_| done += 1);
         match end.map_err(|lost| SnapshotError::Replay(lost.to_string()))? {
-            RunEnd::Stopped(error) => return Err(error),
+            RunEnd::Stopped(why) => return Err(SnapshotError::Replay(why)),
             RunEnd::Spent => {}
             RunEnd::Finished | RunEnd::Failed(_) | RunEnd::Interrupted => {
                 return Err(SnapshotError::Replay(format!(
@@ -300,7 +283,8 @@ impl Snapshot {
                 )));
             }
         }
-        if applied.peek().is_some() {
+        let last = self.interventions.last().map_or(0, |a| a.step);
+        if last > self.steps || !self.interventions.is_sorted_by_key(|a| a.step) {
             return Err(SnapshotError::Replay(
                 "its interventions are out of order or after its last step".into(),
             ));
@@ -314,6 +298,37 @@ impl Snapshot {
             event,
         ))
     }
+}
+
+/// Runs a solver from its start with interventions, and calls `see` after each minor iteration. An intervention that is not
+/// possible stops the run, with the reason.
+///
+/// # Errors
+/// If the solver cannot continue.
+pub fn repeat<T: Solver + ?Sized>(
+    solver: &mut T,
+    interventions: &[AppliedIntervention],
+    until: Until<'_>,
+    mut see: impl FnMut(&mut T),
+) -> Result<RunEnd<String>, SolverLost> {
+    let mut left = interventions.iter().peekable();
+    let mut done = 0;
+    let mut intervene = |solver: &mut T, done: u64| {
+        while let Some(next) = left.next_if(|a| a.step == done) {
+            if let Err(why) = solver.intervene(&next.intervention) {
+                return ControlFlow::Break(format!("after step {done}: {why}"));
+            }
+        }
+        ControlFlow::Continue(())
+    };
+    if let ControlFlow::Break(why) = intervene(solver, done) {
+        return Ok(RunEnd::Stopped(why));
+    }
+    drive(solver, until, |solver| {
+        done += 1;
+        see(solver);
+        intervene(solver, done)
+    })
 }
 
 impl Recorded {

@@ -3,8 +3,8 @@
 use crate::explain::names;
 use crate::record::journal::{Entry, JournalError, Record, date};
 use crate::{BranchTarget, Command, Unit};
-use stickslip_core::Model;
-use stickslip_core::words::counted;
+use stickslip_core::{Model, counted};
+use stickslip_scene::few;
 
 /// The text of a journal.
 ///
@@ -18,12 +18,8 @@ pub fn story(record: &Record) -> Result<String, JournalError> {
         "Session of {year:04}-{month:02}-{day:02} {hour:02}:{minute:02} UTC with stickslip {}.\n",
         header.version
     );
-    let slaves = model.contacts.len();
-    let names: Vec<&str> = (0..slaves.min(6))
-        .map(|s| names::slave(&model, s))
-        .collect();
-    let more = if slaves > names.len() { ", …" } else { "" };
-    text += &format!("Slave nodes: {}{more}.\n\n", names.join(", "));
+    let names = (0..model.contacts.len()).map(|s| names::slave(&model, s));
+    text += &format!("Slave nodes: {}.\n\n", few(names, 6));
     let shown: Vec<&Entry> = record.entries.iter().map(|(_, entry)| entry).collect();
     let mut number = 0;
     for (k, entry) in shown.iter().enumerate() {
@@ -76,7 +72,7 @@ pub fn done(model: &Model, entry: &Entry) -> String {
         Command::Assume(starts) => {
             format!(
                 "Started from a consistent state: {}.",
-                names::starts(model, starts)
+                names::starts(model, starts, usize::MAX)
             )
         }
         Command::Follow { label, steps } => {

@@ -34,8 +34,11 @@ use crate::explain::names;
 use crate::history::strip::norms_after;
 use std::fmt::Write;
 use stickslip_core::fem::deformation::deformation;
-use stickslip_core::model::{Control, Jumps, Monitor, MonitorQuantity, ReportedKind};
-use stickslip_core::{ContactRecord, Event, Failure, Friction, Model, Motion, Outcome, Stability};
+use stickslip_core::model::ReportedKind;
+use stickslip_core::{
+    ContactRecord, Control, Event, Failure, Friction, Jumps, Model, Monitor, MonitorQuantity,
+    Motion, Outcome, Stability,
+};
 use stickslip_study::csv::field;
 
 /// The first line of `--csv`.

@@ -14,16 +14,14 @@ use stickslip_core::interface::method::NodeContext;
 use stickslip_core::step::event::{Frame, Words};
 use stickslip_core::step::judged::{self, ReferenceSizes};
 use stickslip_core::strategy::method;
-use stickslip_core::words::counted;
 use stickslip_core::{
     ContactRecord, Decision, Event, Failure, Forced, Friction, Mode, Model, Norms, Numbers,
-    Outcome, Position, Rule, State, Strategy, SurfacePoint, Test, TestedQuantity, Ties,
+    Outcome, Position, Rule, State, Strategy, SurfacePoint, Test, TestedQuantity, Ties, counted,
 };
 use stickslip_exchange::attach::message::{
     self, Components, ContactResult, Decides, EndedLevel, Id,
 };
-use stickslip_scene::Scene;
-use stickslip_scene::shown;
+use stickslip_scene::{Scene, shown};
 
 /// Relative difference of forces and lengths below which a repeated decision is a tie.
 const TIE: f64 = 1e-9;

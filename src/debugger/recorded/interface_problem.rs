@@ -1,8 +1,7 @@
 //! Checks the frozen interface problem that a solver reports.
 
 use super::fault::Fault;
-use stickslip_core::words::counted;
-use stickslip_core::{Friction, ReportedForm, ReportedProblem};
+use stickslip_core::{Friction, ReportedForm, ReportedProblem, counted};
 use stickslip_exchange::attach::message::{Id, MatrixMessage, ProblemMessage};
 
 /// Converts the problem, whose contacts have these ids.

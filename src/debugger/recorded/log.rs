@@ -70,14 +70,13 @@ impl Log {
     ///
     /// # Errors If the file exists and may not be overwritten, or cannot be written.
     pub fn keep(&self, path: &Path, overwrite: bool) -> std::io::Result<()> {
-        let mut options = File::options();
-        options.write(true).append(!overwrite).truncate(overwrite);
-        if overwrite {
-            options.create(true)
-        } else {
-            options.create_new(true)
-        };
-        let mut file = options.open(path)?;
+        let mut file = File::options()
+            .write(true)
+            .append(!overwrite)
+            .truncate(overwrite)
+            .create(overwrite)
+            .create_new(!overwrite)
+            .open(path)?;
         file.write_all(format!("{SEALED_HEAD}\n").as_bytes())?;
         self.with(|inner| inner.kept = Some(file));
         Ok(())

@@ -8,6 +8,7 @@ use crate::history::rounds::{Rounds, rounds, words};
 use std::fmt::Write;
 use stickslip_core::{Model, Solver};
 use stickslip_exchange::attach::message::Level;
+use stickslip_scene::few;
 
 /// Maximum number of contacts named, and of messages shown.
 const NAMED: usize = 6;
@@ -23,12 +24,8 @@ pub fn story(file: &str, opened: &mut OpenedExchange) -> String {
         model.title,
         who.trim()
     );
-    let slaves = model.contacts.len();
-    let named: Vec<&str> = (0..slaves.min(NAMED))
-        .map(|s| names::slave(&model, s))
-        .collect();
-    let more = if slaves > NAMED { ", …" } else { "" };
-    let _ = writeln!(text, "Contacts: {}{more}.", named.join(", "));
+    let named = (0..model.contacts.len()).map(|s| names::slave(&model, s));
+    let _ = writeln!(text, "Contacts: {}.", few(named, NAMED));
     if opened.lines.is_empty() {
         text += "\nNo iterations.\n";
     }
@@ -90,20 +87,13 @@ fn way(
                 }
                 let event = past.event();
                 let strip = Strip::new(model, past.state(), Some(event), Some(before), 0.0);
-                let differ: Vec<&str> = (0..model.contacts.len())
-                    .filter(|&slave| strip.differs(slave))
-                    .map(|slave| names::slave(model, slave))
-                    .collect();
-                let more = if differ.len() > NAMED { ", …" } else { "" };
-                let differ = if differ.is_empty() {
-                    String::new()
-                } else {
-                    format!(
-                        "; ≠ own rules at {}{more}",
-                        differ[..differ.len().min(NAMED)].join(", ")
-                    )
-                };
-                (strip, report::outcome(model, event) + &differ)
+                let mut words = report::outcome(model, event);
+                let differ = (0..model.contacts.len()).filter(|&slave| strip.differs(slave));
+                let differ = few(differ.map(|slave| names::slave(model, slave)), NAMED);
+                if !differ.is_empty() {
+                    words += &format!("; ≠ own rules at {differ}");
+                }
+                (strip, words)
             }
         };
         let next = strip.position;

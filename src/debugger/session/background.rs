@@ -24,17 +24,18 @@ use super::background_messages::{
 use super::exports::{Export, is_of_problem, write, write_posed};
 use super::trials::try_remedies;
 use super::worker::Lender;
-use super::worst_points::{WorstPoints, worst_point};
 use crate::explain::examination::examine_nodes;
 use crate::explain::influence::{PushPath, between, pushed, pushes};
 use crate::explain::page::page;
 use crate::explain::remedies;
 use crate::explain::reported_pushes;
+use crate::memo::Memo;
 use crate::{DiagnosisPage, ExportError, NodePush, RemedyTrial};
 use std::collections::HashMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
+use stickslip_core::fem::deformation::deformation;
 use stickslip_core::{
     Capabilities, Estimate, Model, PointDeformation, ReportedProblem, State, Stepper,
 };
@@ -96,7 +97,8 @@ pub struct Background {
     /// Position at which pushes need a large solver, and the one at which they are computed nevertheless.
     costly: Option<LinePlace>,
     demanded: Option<LinePlace>,
-    pub(super) worst: WorstPoints,
+    /// Worst points of the solids by displacements; `None` if no point is bad, or while it is being computed.
+    pub(super) worst: Memo<Vec<f64>, Option<PointDeformation>>,
     /// By position: the requested nodes, and the result.
     examinations: HashMap<LinePlace, (Vec<usize>, Option<DiagnosisPage>)>,
     exported: Option<Result<String, ExportError>>,
@@ -172,7 +174,7 @@ impl Background {
             pushes: HashMap::new(),
             costly: None,
             demanded: None,
-            worst: WorstPoints::default(),
+            worst: Memo::default(),
             examinations: HashMap::new(),
             exported: None,
             tried: None,
@@ -434,7 +436,8 @@ impl Helper {
     ) -> Option<()> {
         match ask {
             BackgroundRequest::WorstPoint(u) => {
-                let found = worst_point(&self.model, &u);
+                let found = deformation(&self.model, &u);
+                let found = found.and_then(|found| found.inverted().or(found.outside));
                 news.send(BackgroundReply::WorstPoint(u, found)).ok()
             }
             BackgroundRequest::Pushes(place, slave, between, demanded) => {

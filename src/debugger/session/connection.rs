@@ -4,8 +4,8 @@ use super::refusal::Refusal;
 use super::timeline::Timeline;
 use crate::{Log, Strip};
 use stickslip_core::step::state::Controls;
-use stickslip_core::words::counted;
-use stickslip_core::{Capabilities, Friction, Intervention, RewindSupport, State};
+use stickslip_core::{Capabilities, Friction, Intervention, RewindSupport, State, counted};
+use stickslip_scene::joined;
 
 /// A solver as its session sees it.
 pub struct Connection {
@@ -144,13 +144,13 @@ impl Connection {
                 value: parameter.read(value).map_err(Refusal::Intervention)?,
             },
             (_, None) => {
-                let names: Vec<&str> = known.iter().map(|known| known.name.as_str()).collect();
+                let names = joined(known.iter().map(|known| &known.name), ", ");
                 return Err(Refusal::NoParameter {
                     name: path.to_owned(),
                     known: if names.is_empty() {
                         "it has none".into()
                     } else {
-                        format!("it has {}", names.join(", "))
+                        format!("it has {names}")
                     },
                 });
             }

@@ -1,9 +1,8 @@
 //! The scene with the changes made during a run, and further changes of its scalars.
 
 use super::refusal::Refusal;
-use stickslip_core::model::Contact;
 use stickslip_core::step::state::Controls;
-use stickslip_core::{Friction, Intervention};
+use stickslip_core::{Contact, Friction, Intervention};
 use stickslip_scene::format::contact_law::FrictionSpec;
 use stickslip_scene::format::paths;
 use stickslip_scene::{Scene, Spec};

@@ -3,7 +3,7 @@
 use super::refusal::Refusal;
 use crate::record::journal::{Entry, Journal, JournalError};
 use std::path::{Path, PathBuf};
-use stickslip_core::words::counted;
+use stickslip_core::counted;
 use stickslip_scene::Scene;
 
 /// The entries of a session and where they are written.

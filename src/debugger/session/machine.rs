@@ -20,6 +20,7 @@ use crate::history::tree::Budget;
 use crate::history::verdicts;
 use crate::history::watches::Watches;
 use crate::record::journal::{self, Entry};
+use crate::record::state_digest::StateDigests;
 use crate::recorded::calculix::words::NO_MODES;
 use crate::{Breakpoints, Command, Frame, Log, Tree};
 use std::sync::Arc;
@@ -27,10 +28,8 @@ use std::time::Duration;
 use stickslip_core::step::cone_solver::ConeSolver;
 use stickslip_core::{Capabilities, Intervention, Model, Solver, Stepper};
 use stickslip_platform::clock::Instant;
-use stickslip_scene::Scene;
-use stickslip_scene::gaps;
-use stickslip_scene::number::shortest;
 use stickslip_scene::solver::solver;
+use stickslip_scene::{Scene, gaps, joined, shortest};
 
 /// Maximum duration of one call of `poll`, so that the caller stays responsive.
 const SLICE: Duration = Duration::from_millis(10);
@@ -52,6 +51,7 @@ pub struct Session {
     watches: Watches,
     pub(super) background: Background,
     pub(super) journal: JournalWriter,
+    digests: StateDigests,
     /// The command that the worker is executing.
     pending: Option<Command>,
     /// Minor iterations solved by the current command, and increments accepted among them.
@@ -125,6 +125,7 @@ impl Session {
             watches: Watches::default(),
             background,
             journal: JournalWriter::default(),
+            digests: StateDigests::default(),
             pending: None,
             solved: 0,
             accepted: 0,
@@ -221,13 +222,14 @@ impl Session {
                     None => format!("{name} = none"),
                 });
         let finished = self.model().finished.as_ref();
-        finished
-            .map(|_| NO_MODES.to_owned())
-            .into_iter()
-            .chain(branch)
-            .chain(watches)
-            .collect::<Vec<_>>()
-            .join("   ")
+        joined(
+            finished
+                .map(|_| NO_MODES.to_owned())
+                .into_iter()
+                .chain(branch)
+                .chain(watches),
+            "   ",
+        )
     }
 
     /// Whether the worker is busy.
@@ -441,7 +443,7 @@ impl Session {
                 accepted: self.accepted,
                 branch,
                 cursor,
-                digest: journal::digest(&self.frame().state),
+                digest: self.digests.digest(&self.timeline.frame().state),
                 said: reply.clone(),
             };
             self.journal.done(&self.scene, entry, changes);

@@ -5,7 +5,7 @@
 //! - [`timeline`]: the shown line of the history and the cursor; [`connection`]: the solver as the session sees
 //!   it; `current_scene`: the scene with the changes made during a run.
 //! - [`worker`]: the thread that solves; [`background`]: the thread that analyses; [`exports`]: the files it
-//!   writes; `trials` and `worst_points`: two of the analyses.
+//!   writes; `trials`: one of the analyses.
 //! - `recorded_run`: sessions on recorded runs.
 //! - [`journal_writer`]: the journal being written; [`replay`]: repeating a journal; [`refusal`]: the errors.
 
@@ -25,7 +25,6 @@ pub mod replay;
 pub mod timeline;
 mod trials;
 pub mod worker;
-mod worst_points;
 
 pub use machine::{Reply, Session};
 pub use refusal::Refusal;

@@ -4,8 +4,7 @@ use super::machine::{Session, Task};
 use super::refusal::Refusal;
 use super::worker::Steps;
 use crate::{Breakpoints, Unit};
-use stickslip_core::Status;
-use stickslip_core::words::counted;
+use stickslip_core::{Status, counted};
 
 impl Session {
     /// Moves the cursor over recorded steps, then solves.

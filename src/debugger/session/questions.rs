@@ -12,7 +12,6 @@ use crate::record::snapshot;
 use crate::{DiagnosisPage, Examination, ExportError, ExportScope, PointKind, Snapshot};
 use std::path::PathBuf;
 use stickslip_core::Status;
-use stickslip_core::model::BodyKind;
 use stickslip_platform::files;
 
 impl Session {
@@ -25,12 +24,7 @@ impl Session {
         if slave < self.model().contacts.len() {
             self.look_at(slave);
         }
-        if self
-            .model()
-            .bodies
-            .iter()
-            .any(|body| matches!(body.kind, BodyKind::Solid(_)))
-        {
+        if self.model().has_solids() {
             let u = &self.timeline.frame().state.u;
             self.background.ask_worst_point(u);
         }

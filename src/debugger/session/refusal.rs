@@ -5,7 +5,7 @@ use crate::history::breakpoints::NoBreakpoint;
 use crate::history::watches::WatchError;
 use crate::record::journal::JournalError;
 use crate::{ExportError, SnapshotError};
-use stickslip_core::words::counted;
+use stickslip_core::counted;
 use stickslip_platform::files::FileError;
 use stickslip_scene::format::error::SetError;
 

@@ -2,7 +2,8 @@
 
 use super::machine::Session;
 use super::refusal::Departure;
-use crate::record::journal::{self, Entry, Journal, JournalError, Record};
+use crate::record::journal::{Entry, Journal, JournalError, Record};
+use crate::record::state_digest::digest_like;
 use crate::{Breakpoints, JournalTarget, Unit};
 use stickslip_scene::shown;
 
@@ -27,11 +28,11 @@ impl Session {
                 then: (entry.branch.saturating_add(1), entry.cursor),
             });
         }
-        let digest = journal::digest_like(&entry.digest, &self.frame().state);
+        let digest = digest_like(&entry.digest, &self.frame().state);
         if digest != entry.digest {
             return Err(Departure::State {
                 now: digest,
-                then: shown::cut(&entry.digest, 40).to_string(),
+                then: shown::cut(&entry.digest, 40),
             });
         }
         // An interrupted motion is replayed up to where it stopped.

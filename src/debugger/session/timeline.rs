@@ -17,8 +17,7 @@ use crate::record::snapshot::AppliedIntervention;
 use crate::{BranchTarget, Breakpoints, Frame, PointKind, ReportedIterations, Strip, Tree, Unit};
 use std::sync::Arc;
 use stickslip_core::{Event, Intervention, Model, Norms, Outcome, Position, State, Status};
-use stickslip_scene::number::shortest;
-use stickslip_scene::shown;
+use stickslip_scene::{shortest, shown};
 
 /// A tree of branches, and the cursor on its current line.
 pub struct Timeline {

@@ -11,6 +11,7 @@ use stickslip_core::step::drive::drive;
 use stickslip_core::{Event, Intervention, RunEnd, Solver, SolverLost, State, Until};
 use stickslip_platform::clock::Instant;
 use stickslip_platform::task::{self, Next, Task};
+use stickslip_scene::joined;
 
 /// Sleep between two polls while waiting for the worker. Waking the waiting thread with every message would
 /// cost the solver time in each iteration.
@@ -335,11 +336,11 @@ fn send_done<T>(
     hits: Vec<u32>,
     more: Option<String>,
 ) -> Option<Option<T>> {
-    let parts: Vec<String> = solver.take_notice().into_iter().chain(more).collect();
+    let parts = joined(solver.take_notice().into_iter().chain(more), "; ");
     let done = Message::Done {
         interrupted,
         hits,
-        remark: (!parts.is_empty()).then(|| parts.join("; ")),
+        remark: (!parts.is_empty()).then_some(parts),
     };
     send_last(news, done)
 }

@@ -12,13 +12,13 @@ use std::borrow::Cow;
 use std::sync::Arc;
 use stickslip_core::{JudgedLaw, Mode, Model};
 use stickslip_platform::disk;
-use stickslip_scene::embedded;
 use stickslip_scene::embedded_all;
 use stickslip_scene::format::error::{AtPath, Path, at, bail, did_you_mean, fault};
 use stickslip_scene::format::{Fault, read};
 use stickslip_scene::readers::or_mistaken;
 use stickslip_scene::scene::placed;
 use stickslip_scene::{EmbeddedFile, FileKind, Scene, SceneError};
+use stickslip_scene::{embedded, joined};
 use stickslip_study::Vary;
 
 /// A lesson that matches its scene.
@@ -318,7 +318,7 @@ fn text_of(name: &str) -> Result<(Cow<'_, str>, Cow<'static, str>), SceneError> 
             error.message = format!(
                 "no such file or built-in lesson{} (built-in: {})",
                 did_you_mean(name, names()),
-                names().collect::<Vec<_>>().join(", ")
+                joined(names(), ", ")
             );
         }
         error
@@ -592,7 +592,7 @@ impl LessonReader<'_> {
             When::Breaks(name) => {
                 let all = || JudgedLaw::ALL.into_iter().chain(JudgedLaw::OF_BONDS);
                 let law = all().find(|law| law.name() == name);
-                let names = || all().map(JudgedLaw::name).collect::<Vec<_>>().join(", ");
+                let names = || joined(all().map(JudgedLaw::name), ", ");
                 Truth::Breaks(
                     law.ok_or_else(|| fault!(path, "unknown law {name:?}; laws: {}", names()))?,
                 )

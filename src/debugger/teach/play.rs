@@ -10,8 +10,7 @@ use crate::explain::names;
 use crate::recorded::exchange;
 use crate::{Command, Recording, Session, Unit};
 use std::sync::Arc;
-use stickslip_scene::SceneError;
-use stickslip_scene::number::sig4;
+use stickslip_scene::{SceneError, sig4};
 
 /// Maximum number of minor iterations that provide the predictions of a step.
 const MOST_STEPS: u32 = 1000;

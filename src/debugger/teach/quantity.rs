@@ -19,7 +19,7 @@ use crate::explain::judged;
 use crate::explain::names;
 use crate::explain::report;
 use stickslip_core::Mode;
-use stickslip_scene::number::sig4;
+use stickslip_scene::sig4;
 
 /// A quantity that the solver can provide.
 #[derive(Debug, Clone, PartialEq)]

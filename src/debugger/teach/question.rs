@@ -9,7 +9,7 @@ use crate::explain::names::{self, MODES, TABLE_2};
 use crate::explain::report;
 use crate::explain::tested;
 use stickslip_core::{Decision, Mode, Rule, Stability, Test};
-use stickslip_scene::number::sig4;
+use stickslip_scene::{joined, sig4};
 
 /// Relative difference below which numbers count as about the same.
 const CLOSE: f64 = 0.05;
@@ -291,6 +291,6 @@ fn compared(decision: &Decision) -> String {
         });
         format!("{name} = {} {sign} {bound}", sig4(test.value))
     };
-    let tests: Vec<String> = decision.tests.iter().flatten().map(side).collect();
-    tests.join(", and ")
+
+    joined(decision.tests.iter().flatten().map(side), ", and ")
 }

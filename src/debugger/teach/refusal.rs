@@ -2,7 +2,7 @@
 
 use crate::action::ParseError;
 use crate::session::Refusal;
-use stickslip_core::words::counted;
+use stickslip_core::counted;
 use stickslip_scene::format::error::did_you_mean;
 
 /// Why an action is not allowed now.

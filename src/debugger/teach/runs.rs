@@ -2,6 +2,7 @@
 
 use super::refusal::LessonError;
 use std::sync::OnceLock;
+use stickslip_scene::joined;
 use stickslip_study::chart_file::Chart;
 use stickslip_study::chart_runs::PlannedChart;
 use stickslip_study::precision::{self, Cost, Measure, Point, Precision};
@@ -66,7 +67,7 @@ impl Runs {
                 let settings = settings
                     .iter()
                     .map(|(path, value)| format!("{path}={value}"));
-                Err(LessonError::NoRun(settings.collect::<Vec<_>>().join(" ")))
+                Err(LessonError::NoRun(joined(settings, " ")))
             }
         }
     }

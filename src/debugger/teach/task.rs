@@ -6,7 +6,7 @@ use super::spec::Aid;
 use crate::Frame;
 use crate::action::Action;
 use stickslip_core::{Intervention, Outcome, Status, Strategy};
-use stickslip_scene::number::shortest;
+use stickslip_scene::{joined, shortest};
 
 /// Relative difference of load factors that counts as none.
 const SAME_LOAD: f64 = 1e-9;
@@ -125,10 +125,10 @@ fn uses(aid: Aid, frames: &[Frame]) -> bool {
 
 /// What a task excludes, in words; empty if nothing.
 fn without(aids: &[Aid]) -> String {
-    let words: Vec<_> = aids.iter().map(|aid| aid.words()).collect();
+    let words = joined(aids.iter().map(|aid| aid.words()), ", ");
     if words.is_empty() {
         String::new()
     } else {
-        format!(" without {}", words.join(", "))
+        format!(" without {words}")
     }
 }

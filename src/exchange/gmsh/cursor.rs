@@ -86,60 +86,29 @@ impl<'a> Cursor<'a> {
     /// A count or a tag.
     pub fn size(&mut self, what: &str) -> Result<u64, FormatError> {
         match self.form {
-            CursorForm::Text => self.parsed(what, "a nonnegative whole number"),
-            CursorForm::Binary { big } => {
-                let bytes = self.take(what)?;
-                Ok(if big {
-                    u64::from_be_bytes(bytes)
-                } else {
-                    u64::from_le_bytes(bytes)
-                })
-            }
+            CursorForm::Text => self.number(what, "a nonnegative whole number"),
+            CursorForm::Binary { big } => Ok(u64::from_le_bytes(self.take(big, what)?)),
         }
     }
 
     /// A signed 32-bit number.
     pub fn int(&mut self, what: &str) -> Result<i64, FormatError> {
         match self.form {
-            CursorForm::Text => self.parsed(what, "a whole number"),
-            CursorForm::Binary { big } => {
-                let bytes = self.take(what)?;
-                let value = if big {
-                    i32::from_be_bytes(bytes)
-                } else {
-                    i32::from_le_bytes(bytes)
-                };
-                Ok(value.into())
-            }
+            CursorForm::Text => self.number(what, "a whole number"),
+            CursorForm::Binary { big } => Ok(i32::from_le_bytes(self.take(big, what)?).into()),
         }
     }
 
     /// A finite coordinate.
     pub fn float(&mut self, what: &str) -> Result<f64, FormatError> {
         let value = match self.form {
-            CursorForm::Text => self.parsed(what, "a number")?,
-            CursorForm::Binary { big } => {
-                let bytes = self.take(what)?;
-                if big {
-                    f64::from_be_bytes(bytes)
-                } else {
-                    f64::from_le_bytes(bytes)
-                }
-            }
+            CursorForm::Text => self.number(what, "a number")?,
+            CursorForm::Binary { big } => f64::from_le_bytes(self.take(big, what)?),
         };
         if f64::is_finite(value) {
             return Ok(value);
         }
         Err(self.wrong(format!("{what} is {value}; it must be a finite number")))
-    }
-
-    /// A number that is text even in binary files.
-    pub fn number<T: std::str::FromStr>(
-        &mut self,
-        what: &str,
-        kind: &str,
-    ) -> Result<T, FormatError> {
-        self.parsed(what, kind)
     }
 
     /// Checks a count of items with at least this many numbers each against the rest of the file.
@@ -159,7 +128,12 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    fn parsed<T: std::str::FromStr>(&mut self, what: &str, kind: &str) -> Result<T, FormatError> {
+    /// A number that is text, possibly in a binary file.
+    pub fn number<T: std::str::FromStr>(
+        &mut self,
+        what: &str,
+        kind: &str,
+    ) -> Result<T, FormatError> {
         let Some(word) = self.word() else {
             return Err(self.fault(
                 self.bytes.len(),
@@ -175,12 +149,16 @@ impl<'a> Cursor<'a> {
         })
     }
 
-    fn take<const N: usize>(&mut self, what: &str) -> Result<[u8; N], FormatError> {
+    /// The bytes of a number, least significant first; in a `big` file they are stored in reverse.
+    fn take<const N: usize>(&mut self, big: bool, what: &str) -> Result<[u8; N], FormatError> {
         self.last = self.next;
         let found = self.bytes[self.next..].first_chunk::<N>();
-        let found =
-            found.ok_or_else(|| self.wrong(format!("the file ends where {what} was expected")))?;
+        let mut found =
+            *found.ok_or_else(|| self.wrong(format!("the file ends where {what} was expected")))?;
         self.next += N;
-        Ok(*found)
+        if big {
+            found.reverse();
+        }
+        Ok(found)
     }
 }

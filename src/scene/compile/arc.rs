@@ -1,8 +1,9 @@
 //! Compiles the arc-length settings.
 
 use super::super::nodes::Names;
+use super::monitors::slave_number;
 use crate::Spec;
-use crate::format::error::{AtPath, Fault, Path, at, bail, fault, some_of};
+use crate::format::error::{Fault, Path, at, bail, fault, some_of};
 use stickslip_core::model::{
     ArcLength, ArcMeasure, Bound, Contact, Control, InitialGaps, LinearSolver, Monitor,
     MonitorQuantity,
@@ -109,21 +110,13 @@ fn displacement(here: &Path, name: &str, monitors: &[Monitor]) -> Result<usize, 
 }
 
 fn slave(here: &Path, name: &str, names: &Names, slaves: &[Contact]) -> Result<usize, Fault> {
-    let node = names.node(name).at(here)?;
-    let found = slaves.iter().position(|slave| slave.node == node);
-    let is_elastic = |slave: &Contact| slave.bond.is_tied() || slave.bond.give()[1] > 0.0;
-    if found.is_some_and(|found| is_elastic(&slaves[found])) {
+    let found = slave_number(here, name, names, slaves)?;
+    let bond = &slaves[found].bond;
+    if bond.is_tied() || bond.give()[1] > 0.0 {
         bail!(
             here,
             "the slip of node {name:?} cannot be followed, because the node is tied or slips elastically before it slides; use a monitor"
         );
     }
-    found.ok_or_else(|| {
-        let all = slaves.iter().map(|s| names.nodes[s.node].name.as_str());
-        fault!(
-            here,
-            "node {name:?} is not a slave node (slaves: {})",
-            some_of(all)
-        )
-    })
+    Ok(found)
 }

@@ -10,8 +10,8 @@ use crate::Spec;
 use crate::format::error::{AtPath, Fault, Path, at, bail, fault, none_called};
 use crate::format::spec::{BodySpec, Material, Point, Region};
 use std::collections::HashSet;
-use stickslip_core::model::{Beam, Body, BodyKind, Elastic, Node, Solid, SolidElement, boundary};
-use stickslip_core::model::{Law, Plane, Update};
+use stickslip_core::model::{Beam, SolidElement, boundary};
+use stickslip_core::{Body, BodyKind, Elastic, Law, Node, Plane, Solid, Update};
 
 /// Rejects materials with invalid stiffnesses.
 pub(super) fn materials(spec: &Spec) -> Result<(), Fault> {

@@ -7,11 +7,10 @@ use super::super::areas::{AreaSide, density, sides};
 use super::super::nodes::Names;
 use crate::Spec;
 use crate::format::error::{Fault, at, bail};
-use stickslip_core::SurfaceElement;
 use stickslip_core::contact::projection::{closest_point, projection_at};
 use stickslip_core::fem::lagrange::gauss;
-use stickslip_core::model::{Body, BodyKind, Contact, Node, Surface};
 use stickslip_core::plane::distance;
+use stickslip_core::{Body, Contact, Node, Surface, SurfaceElement};
 
 /// Minimum number of points of a side. Only where a contact zone ends within a side do they matter (page `decks`): the extreme case
 /// is a ring with one element per side, whose forces scatter by 19 % with 3 to 12 points.
@@ -36,7 +35,7 @@ pub(super) fn spread(
     let places: Vec<[f64; 2]> = names.nodes.iter().map(|node| node.at).collect();
     let sides: Vec<AreaSide<'_>> = bodies
         .iter()
-        .filter(|body| matches!(body.kind, BodyKind::Solid(_)))
+        .filter(|body| body.solid().is_some())
         .flat_map(sides)
         .collect();
     let all: Vec<(Contact, usize)> = slaves.drain(..).zip(pairs.drain(..)).collect();

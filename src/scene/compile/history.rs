@@ -3,9 +3,7 @@
 use super::super::limits;
 use crate::format::error::{Fault, at, bail, fault};
 use crate::format::spec::History;
-use stickslip_core::Settings;
-use stickslip_core::model::{Body, BodyKind, Control, Touch};
-use stickslip_core::words::counted;
+use stickslip_core::{Body, BodyKind, Control, Settings, Touch, counted};
 
 /// Rejects an empty or endless path.
 pub(super) fn history(history: &History) -> Result<(), Fault> {

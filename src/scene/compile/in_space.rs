@@ -8,10 +8,9 @@ use crate::limits;
 use crate::nodes::Names;
 use std::collections::HashSet;
 use std::sync::Arc;
-use stickslip_core::Model;
-use stickslip_core::model::{Contact, Node, SpaceProblem, Surface};
+use stickslip_core::model::SpaceProblem;
 use stickslip_core::plane::max_abs;
-use stickslip_core::words::counted;
+use stickslip_core::{Contact, Model, Node, Surface, counted};
 
 /// Checks a problem; the texts have been checked.
 pub(super) fn compile(spec: &Spec, problem: &SpaceSpec) -> Result<(Model, Names), Fault> {

@@ -11,12 +11,11 @@ use crate::Spec;
 use crate::format::contact_law::FrictionSpec;
 use crate::format::error::{Fault, Path, at, bail, none_called, quoted};
 use crate::format::spec::{Nodes, Side, SlaveSpec};
+use crate::joined;
 use std::collections::HashSet;
-use stickslip_core::Friction;
 use stickslip_core::contact::element::closed;
 use stickslip_core::contact::smooth::smooth;
-use stickslip_core::model::{Component, InitialState};
-use stickslip_core::model::{Contact, Dofs, Surface};
+use stickslip_core::{Component, Contact, Dofs, Friction, InitialState, Surface};
 
 /// The surfaces of a scene in list order, one per piece.
 pub(super) struct Surfaces {
@@ -282,18 +281,14 @@ fn check_slave(
     if least <= length {
         return Ok(());
     }
-    let on: Vec<&str> = slave
-        .surfaces
-        .iter()
-        .map(|&s| surfaces[s].name.as_str())
-        .collect();
+    let on = joined(
+        slave.surfaces.iter().map(|&s| surfaces[s].name.as_str()),
+        " and ",
+    );
     Err(format!(
         "node {:?} at ({:?}, {:?}) is {least:.4} away from {}, more than the size of all bodies \
          together ({length:.4}); check the node and the surface",
-        node.name,
-        node.at[0],
-        node.at[1],
-        on.join(" and ")
+        node.name, node.at[0], node.at[1], on
     ))
 }
 

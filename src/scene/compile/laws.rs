@@ -9,11 +9,10 @@ use crate::format::error::{Fault, Path, at, bail, fault};
 use crate::format::spec::SlaveSpec;
 use crate::number::sig4;
 use std::collections::HashSet;
-use stickslip_core::Mode;
 use stickslip_core::contact::facing::is_piece;
 use stickslip_core::contact::projection::{project, projection_at};
-use stickslip_core::model::{Body, Bond, Contact, Dofs, InitialState, Node, Surface};
 use stickslip_core::plane::{self, minus};
+use stickslip_core::{Body, Bond, Contact, Dofs, InitialState, Mode, Node, Surface};
 
 /// Maximum distance that a tied node is moved, relative to the scene's length; nodes further away are not meant to be tied.
 const JOINED: f64 = 0.05;

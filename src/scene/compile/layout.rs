@@ -7,8 +7,8 @@ use crate::Spec;
 use crate::format::error::{AtPath, Fault, Path, at, bail, fault};
 use crate::format::spec::{LoadSpec, Point};
 use std::collections::HashMap;
-use stickslip_core::model::Component;
-use stickslip_core::model::{Body, Dofs, Factor, Load, Prescribed, Pressure};
+use stickslip_core::model::{Factor, Load, Prescribed, Pressure};
+use stickslip_core::{Body, Component, Dofs};
 
 /// The loads of a scene on the model's degrees of freedom.
 #[derive(Debug, Clone, PartialEq, Default)]

@@ -6,9 +6,9 @@ use crate::Spec;
 use crate::format::error::{AtPath, Fault, Path, bail, fault};
 use crate::format::spec::{Bar, BodySpec};
 use std::collections::{BTreeMap, HashMap, HashSet};
-use stickslip_core::model::{Body, BodyKind, Dofs, Factor, Form, Linear, Load, Truss};
+use stickslip_core::model::{Factor, Form, Linear, Load, Truss};
 use stickslip_core::plane::minus;
-use stickslip_core::words::counted;
+use stickslip_core::{Body, BodyKind, Dofs, counted};
 use stickslip_exchange::problem::Matrix;
 
 /// A body given by a stiffness or a compliance. The degrees of freedom of a compliance's forces are numbered later, with all

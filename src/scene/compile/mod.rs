@@ -26,12 +26,13 @@ use super::limits;
 use super::nodes::Names;
 use crate::Spec;
 use crate::format::error::{Fault, at, bail};
+use crate::groups::marked;
 pub use history::increments;
 use layout::Layout;
 pub(crate) use layout::Loads;
 pub(crate) use renewed::{Choices, Compiled, Groups, renewed};
-use stickslip_core::model::{InitialGaps, diagonal};
-use stickslip_core::{Estimate, Model};
+use stickslip_core::model::diagonal;
+use stickslip_core::{Estimate, InitialGaps, Model};
 
 /// Checks a scene.
 pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
@@ -40,7 +41,6 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
     }
     check_texts(spec)?;
     if let Some(problem) = &spec.in_space {
-        check_texts(spec)?;
         return in_space::compile(spec, problem);
     }
     history::memory(&spec.settings)?;
@@ -48,11 +48,8 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
     let mut names = Names::from_spec(spec)?;
     bodies::materials(spec)?;
     let mut bodies = bodies::bodies(spec, &names)?;
-    let mut on_body = vec![false; names.nodes.len()];
-    bodies
-        .iter()
-        .flat_map(|body| &body.nodes)
-        .for_each(|&n| on_body[n] = true);
+    let nodes = bodies.iter().flat_map(|body| &body.nodes);
+    let mut on_body = marked(names.nodes.len(), nodes);
     let of_bodies = names.nodes.iter().zip(&on_body).filter(|(_, on)| **on);
     let mut length = diagonal(of_bodies.map(|(node, _)| node));
     if length == 0.0 {

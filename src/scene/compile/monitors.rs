@@ -7,7 +7,7 @@ use crate::Spec;
 use crate::format::error::{AtPath, Fault, Path, at, bail, fault, quoted, some_of};
 use crate::format::spec::Quantity;
 use std::collections::HashMap;
-use stickslip_core::model::{Contact, Control, Dofs, Monitor, MonitorQuantity};
+use stickslip_core::{Contact, Control, Dofs, Monitor, MonitorQuantity};
 
 /// Name of the last monitor of an arc-length history.
 const ARC: &str = "arc";
@@ -163,8 +163,8 @@ fn slave_numbers(
 ) -> Result<Vec<usize>, Fault> {
     match name {
         Some(name) => {
-            let node = names.node(name).at(here.then("node"))?;
-            Ok(vec![slave_number(here, name, node, names, slaves)?])
+            let here = here.then("node");
+            Ok(vec![slave_number(&here, name, names, slaves)?])
         }
         None if slaves.is_empty() => Err(fault!(
             here,
@@ -174,13 +174,14 @@ fn slave_numbers(
     }
 }
 
-fn slave_number(
+/// The slave with that name.
+pub(super) fn slave_number(
     here: &Path,
     name: &str,
-    node: usize,
     names: &Names,
     slaves: &[Contact],
 ) -> Result<usize, Fault> {
+    let node = names.node(name).at(here)?;
     slaves
         .iter()
         .position(|slave| slave.node == node)
@@ -189,7 +190,7 @@ fn slave_number(
                 .iter()
                 .map(|slave| names.nodes[slave.node].name.as_str());
             fault!(
-                here.then("node"),
+                here,
                 "node {name:?} is not a slave node (slaves: {})",
                 some_of(all)
             )

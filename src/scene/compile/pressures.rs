@@ -4,7 +4,7 @@ use super::super::nodes::Names;
 use super::tractions;
 use crate::format::error::{AtPath, Fault, Path, bail};
 use std::collections::{BTreeMap, HashMap, HashSet};
-use stickslip_core::model::{Body, BodyKind, Elastic, Plane, PressedFace, Update};
+use stickslip_core::model::{Body, Elastic, Plane, PressedFace, Update};
 
 /// Faces under pressure of bodies with large displacements, and of those with small ones.
 #[derive(Default)]
@@ -59,10 +59,7 @@ fn ends(face: &[usize]) -> Option<(usize, usize)> {
 /// The outer faces of all solids by their end nodes, with their materials.
 fn outer_faces(bodies: &[Body]) -> HashMap<(usize, usize), (Vec<usize>, Elastic)> {
     let mut outer = HashMap::new();
-    for body in bodies {
-        let BodyKind::Solid(solid) = &body.kind else {
-            continue;
-        };
+    for solid in bodies.iter().filter_map(Body::solid) {
         let edges: HashSet<&Vec<usize>> = solid.edges.iter().collect();
         for element in &solid.elements {
             for face in element

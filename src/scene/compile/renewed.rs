@@ -10,8 +10,8 @@ use crate::Spec;
 use crate::format::error::{Path, Step};
 use crate::format::paths::ScalarPath;
 use crate::format::spec::SlaveSpec;
-use stickslip_core::model::Control;
-use stickslip_core::{Estimate, Model};
+use crate::groups::marked;
+use stickslip_core::{Control, Estimate, Model};
 
 /// Settings that are used outside the solver too: they move nodes, create surfaces, or make the scene invalid.
 const DEEP: [&str; 4] = ["initial_gaps", "adjust_gap", "point_force", "memory"];
@@ -128,12 +128,8 @@ impl Choices {
     /// The same for changed loads.
     fn other_loads(&self, with: &Compiled<'_>) -> Option<Loads> {
         let (names, bodies) = (with.names, &with.model.bodies);
-        let mut on_body = vec![false; names.nodes.len()];
-        bodies
-            .iter()
-            .flat_map(|body| &body.nodes)
-            .for_each(|&node| on_body[node] = true);
-        let mut layout = Layout::new(on_body, bodies);
+        let nodes = bodies.iter().flat_map(|body| &body.nodes);
+        let mut layout = Layout::new(marked(names.nodes.len(), nodes), bodies);
         layout.supports(&self.spec, names).ok()?;
         let mut loads = layout.loads(&self.spec, names, bodies).ok()?;
         loads

@@ -6,7 +6,7 @@ use crate::format::error::{AtPath, Fault, Path, none_called};
 use std::collections::{BTreeMap, HashMap, HashSet};
 use stickslip_core::fem::continuum::{self, Sample};
 use stickslip_core::model::{
-    Body, BodyKind, Elastic, ElementKind, Factor, Law, Pressure, Solid, SolidElement, Update,
+    Body, Elastic, ElementKind, Factor, Law, Pressure, Solid, SolidElement, Update,
 };
 
 /// Consistent forces ∫ N_i b w dA of a force b per volume, by ascending node number, where w is the width across the plane; `on`
@@ -46,12 +46,7 @@ fn parts<'b>(
     bodies: &'b [Body],
     on: &str,
 ) -> Result<Vec<(&'b SolidElement, &'b Elastic)>, String> {
-    let solids = || {
-        bodies.iter().filter_map(|body| match &body.kind {
-            BodyKind::Solid(solid) => Some((body, solid)),
-            _ => None,
-        })
-    };
+    let solids = || bodies.iter().filter_map(|body| Some((body, body.solid()?)));
     let of = |solid: &'b Solid| {
         solid
             .elements
@@ -83,17 +78,11 @@ fn parts<'b>(
 
 /// The body that an expansion acts on.
 pub(super) fn expanding(bodies: &[Body], on: &str) -> Result<usize, String> {
-    let solids = bodies.iter().filter_map(|body| match &body.kind {
-        BodyKind::Solid(solid) => Some((body.name.as_str(), solid)),
-        _ => None,
-    });
-    let Some((_, solid)) = solids.clone().find(|(name, _)| *name == on) else {
-        return Err(none_called(
-            "solid",
-            on,
-            "solids",
-            solids.map(|(name, _)| name),
-        ));
+    let found = bodies.iter().position(|body| body.name == on);
+    let Some((place, solid)) = found.and_then(|k| Some((k, bodies[k].solid()?))) else {
+        let solids = bodies.iter().filter(|body| body.solid().is_some());
+        let names = solids.map(|body| body.name.as_str());
+        return Err(none_called("solid", on, "solids", names));
     };
     if !solid
         .materials
@@ -104,10 +93,7 @@ pub(super) fn expanding(bodies: &[Body], on: &str) -> Result<usize, String> {
             "body {on:?} cannot expand: this needs law svk, and update total or small"
         ));
     }
-    Ok(bodies
-        .iter()
-        .position(|body| body.name == on)
-        .unwrap_or_default())
+    Ok(place)
 }
 
 /// The same in Green strains, E = e + e²/2, of which the law is made; between the points of the amplitude in proportion.

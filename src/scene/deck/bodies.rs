@@ -5,9 +5,10 @@ use crate::format::error::at;
 use crate::format::error::bail;
 use crate::format::given::Cells;
 use crate::format::spec::{BodySpec, Material, Nodes};
+use crate::groups::Connected;
 use crate::import::element_kind;
 use std::collections::BTreeMap;
-use stickslip_core::model::{ElementKind, Law, Plane, Update};
+use stickslip_core::{ElementKind, Law, Plane, Update};
 use stickslip_exchange::inp::deck::{Element, ElementType, Family, Form, Section};
 use stickslip_exchange::mesh::CellKind;
 
@@ -67,7 +68,7 @@ impl DeckObjects<'_> {
 
     /// The continuum elements of each body, in deck order.
     fn parts(&self, section_of: &[usize]) -> BTreeMap<Part, Vec<usize>> {
-        let mut groups = DeckGroups::from_deck(self.deck.nodes.len());
+        let mut groups = Connected::new(self.deck.nodes.len());
         let solids = || {
             self.deck
                 .elements
@@ -298,28 +299,5 @@ fn kind_of(kind: ElementType) -> ElementKind {
         (CellKind::Quad4, true) => ElementKind::Quad4Reduced,
         (CellKind::Quad8, true) => ElementKind::Quad8Reduced,
         (cell, _) => element_kind(cell).unwrap_or_default(),
-    }
-}
-
-/// Groups of connected nodes.
-pub(super) struct DeckGroups(Vec<usize>);
-
-impl DeckGroups {
-    pub fn from_deck(nodes: usize) -> Self {
-        DeckGroups((0..nodes).collect())
-    }
-
-    /// The representative of a node's group: its smallest node.
-    pub fn root(&mut self, mut node: usize) -> usize {
-        while self.0[node] != node {
-            self.0[node] = self.0[self.0[node]];
-            node = self.0[node];
-        }
-        node
-    }
-
-    pub fn join(&mut self, a: usize, b: usize) {
-        let (a, b) = (self.root(a), self.root(b));
-        self.0[a.max(b)] = a.min(b);
     }
 }

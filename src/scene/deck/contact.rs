@@ -1,19 +1,18 @@
 //! Contact pairs and ties of a deck.
 
 use super::super::corners::{self, CORNER};
-use super::bodies::DeckGroups;
 use super::{DeckObjects, Fault, MESH};
 use crate::format::contact_law::{ContactLaw, FrictionSpec};
 use crate::format::error::at;
 use crate::format::error::bail;
 use crate::format::given::SideSet;
 use crate::format::spec::{Nodes, SlaveSpec, SurfaceSpec};
-use crate::geometry::distance_to_segment;
+use crate::groups::Connected;
 use crate::number::sig4;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use stickslip_core::Mode;
 use stickslip_core::model::{InitialGaps, SlavePoints};
-use stickslip_core::plane::distance;
+use stickslip_core::plane::{distance, distance_to_segment, range};
 use stickslip_exchange::inp::DeckLocation;
 use stickslip_exchange::inp::deck::{Adjust, Faces, Family, Normal, Pair, Tie};
 
@@ -272,7 +271,7 @@ impl DeckObjects<'_> {
             let next = number.len();
             number.entry(*node).or_insert(next);
         }
-        let mut groups = DeckGroups::from_deck(number.len());
+        let mut groups = Connected::new(number.len());
         for side in &sides {
             side.windows(2)
                 .for_each(|pair| groups.join(number[&pair[0]], number[&pair[1]]));
@@ -462,18 +461,11 @@ impl DeckObjects<'_> {
 
     /// Diagonal of the bounding box of all nodes.
     fn size(&self) -> f64 {
-        let range = |axis: usize| {
-            let (least, most) = self
-                .deck
-                .nodes
-                .iter()
-                .map(|node| node.at[axis])
-                .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| {
-                    (a.min(x), b.max(x))
-                });
+        let extent = |axis: usize| {
+            let [least, most] = range(self.deck.nodes.iter().map(|node| node.at[axis]));
             most - least
         };
-        range(0).hypot(range(1))
+        extent(0).hypot(extent(1))
     }
 
     /// The nodes of a tie that are close enough to the master.

@@ -6,6 +6,7 @@ use crate::format::error::at;
 use crate::format::error::bail;
 use crate::format::given::NodeSet;
 use crate::format::spec::{LoadSpec, MonitorSpec, Nodes, Quantity, SupportSpec};
+use crate::groups::marked;
 use std::collections::{BTreeMap, HashMap};
 use stickslip_core::model::{Axis, Component};
 use stickslip_exchange::inp::DeckLocation;
@@ -96,14 +97,9 @@ impl DeckObjects<'_> {
     }
 
     fn is_beam_node(&self) -> Vec<bool> {
-        let mut on_beam = vec![false; self.deck.nodes.len()];
-        self.deck
-            .elements
-            .iter()
-            .filter(|e| e.kind.family == Family::Beam)
-            .flat_map(|e| &e.nodes)
-            .for_each(|&node| on_beam[node] = true);
-        on_beam
+        let elements = self.deck.elements.iter();
+        let beams = elements.filter(|e| e.kind.family == Family::Beam);
+        marked(self.deck.nodes.len(), beams.flat_map(|e| &e.nodes))
     }
 
     fn motions(&mut self, clock: &Clock) -> Result<(), Fault> {

@@ -18,6 +18,7 @@ mod loads;
 mod tests;
 
 use crate::format::error::{self, Path, Step, at};
+use crate::groups::marked;
 use crate::{SceneError, Spec};
 
 use crate::shown::cut;
@@ -239,11 +240,8 @@ impl<'d> DeckObjects<'d> {
         } else {
             &deck.heading
         };
-        let mut used = vec![false; deck.nodes.len()];
-        deck.elements
-            .iter()
-            .flat_map(|e| &e.nodes)
-            .for_each(|&node| used[node] = true);
+        let used = deck.elements.iter().flat_map(|e| &e.nodes);
+        let used = marked(deck.nodes.len(), used);
         let remark = |remark: &inp::deck::Remark| {
             let times = if remark.times > 1 {
                 format!(" ({} times)", remark.times)

@@ -3,7 +3,7 @@
 use crate::Scene;
 use crate::format::spec::LoadSpec;
 use proptest::prelude::*;
-use stickslip_core::model::{Bond, Plane, Update};
+use stickslip_core::{Bond, Plane, Update};
 
 const BLOCK: &str = include_str!("../../../tests/decks/press-and-push.inp");
 const PLATES: &str = include_str!("../../../tests/decks/pressed-plates.inp");

@@ -20,10 +20,12 @@ use super::error::{Path, Step, at};
 use super::in_space::SpaceSpec;
 use super::notation;
 use super::spec::{BodySpec, History, LoadSpec, Nodes, SlaveSpec, Spec, SurfaceSpec};
+use crate::joined;
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize};
-use stickslip_core::model::{InitialState, SlavePoints};
-use stickslip_core::{Friction, Mode, Settings};
+use stickslip_core::model::SlavePoints;
+use stickslip_core::{Friction, InitialState, Mode, Settings};
+use stickslip_exchange::problem;
 
 /// First word of an interface problem file.
 pub const HEAD: &str = "Contacts";
@@ -249,17 +251,9 @@ impl Problem {
             contacts: self.contacts.iter().map(contact).collect(),
             compliance: match &self.matrix {
                 Matrix::Entries(entries) => entries.clone(),
-                Matrix::Compliance(rows) | Matrix::Stiffness(rows) => rows
-                    .iter()
-                    .enumerate()
-                    .flat_map(|(i, row)| {
-                        row.iter()
-                            .enumerate()
-                            .filter(|(_, w)| **w != 0.0)
-                            .map(|(j, &w)| (i, j, w))
-                            .collect::<Vec<_>>()
-                    })
-                    .collect(),
+                Matrix::Compliance(rows) | Matrix::Stiffness(rows) => {
+                    problem::Matrix::from_rows(rows).entries
+                }
             },
             free,
         }
@@ -375,11 +369,7 @@ fn lists(rows: &[Vec<f64>]) -> Vec<String> {
 
 /// Numbers separated by commas; zero is written without a sign.
 fn list(numbers: &[f64]) -> String {
-    numbers
-        .iter()
-        .map(|&x| format!("{:?}", x + 0.0))
-        .collect::<Vec<_>>()
-        .join(", ")
+    joined(numbers.iter().map(|&x| format!("{:?}", x + 0.0)), ", ")
 }
 
 fn quoted(text: &str) -> String {

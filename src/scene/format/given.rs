@@ -1,7 +1,7 @@
 //! Parts of a mesh that is given node by node: elements, node sets and side sets.
 
 use super::described::macros::described;
-use stickslip_core::model::ElementKind;
+use stickslip_core::ElementKind;
 
 described! {
     /// Elements of a given mesh with the same kind and part.

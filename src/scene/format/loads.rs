@@ -1,7 +1,7 @@
 //! The loads of a scene file and their amplitudes.
 
 use super::described::macros::described;
-use stickslip_core::model::Component;
+use stickslip_core::Component;
 
 described! {
     /// A reference load; the applied load is its value times the load factor (or times the factor that `scale` assigns to it).

@@ -2,6 +2,7 @@
 
 use super::described::{Field, Form, Type};
 use super::reference::reference;
+use crate::joined;
 
 /// All types of the file except the settings, which have a separate page.
 ///
@@ -86,13 +87,7 @@ fn fields(form: &Form, all: &[Type]) -> String {
 /// The allowed words of a field.
 fn words<'a>(field: &Field, all: &'a [Type]) -> Option<&'a [Form]> {
     let listed = field.kind.strip_prefix("one of ")?;
-    let names = |one: &Type| {
-        one.forms
-            .iter()
-            .filter_map(|form| form.name)
-            .collect::<Vec<_>>()
-            .join(", ")
-    };
+    let names = |one: &Type| joined(one.forms.iter().filter_map(|form| form.name), ", ");
     all.iter()
         .find(|one| names(one) == listed)
         .map(|one| &one.forms[..])

@@ -6,6 +6,7 @@
 use super::described::{Described, ScalarPlace, Visit};
 use super::error::{Path, SetError, nearest, quoted};
 use super::spec::Spec;
+use crate::few;
 use stickslip_core::Settings;
 
 /// A value set from outside.
@@ -142,20 +143,14 @@ pub fn whole(spec: &Spec, path: &str) -> String {
 fn unknown(spec: &Spec, path: &str) -> String {
     let all = list(spec);
     let names = || all.iter().map(|listed| listed.path.as_str());
-    let inside: Vec<&str> = names()
-        .filter(|name| {
-            !path.is_empty()
-                && name
-                    .strip_prefix(path)
-                    .is_some_and(|r| r.starts_with(['.', '[']))
-        })
-        .collect();
+    let within = |head: &str| {
+        let is_within = |rest: &str| rest.starts_with(['.', '[']);
+        let within = names().filter(|name| name.strip_prefix(head).is_some_and(is_within));
+        few(within, 8)
+    };
+    let inside = within(path);
     if !inside.is_empty() {
-        return format!(
-            "{} is not a single value; it has {}",
-            quoted(path),
-            first_of(&inside)
-        );
+        return format!("{} is not a single value; it has {inside}", quoted(path));
     }
     if let Some(near) = nearest(path, names()) {
         return format!(
@@ -167,17 +162,11 @@ fn unknown(spec: &Spec, path: &str) -> String {
     let mut head = path;
     while let Some(cut) = head.rfind(['.', '[']) {
         head = &head[..cut];
-        let siblings: Vec<&str> = names()
-            .filter(|n| {
-                n.strip_prefix(head)
-                    .is_some_and(|r| r.starts_with(['.', '[']))
-            })
-            .collect();
+        let siblings = within(head);
         if !siblings.is_empty() {
             return format!(
-                "the scene has no value {}; {head} has {}",
-                quoted(path),
-                first_of(&siblings)
+                "the scene has no value {}; {head} has {siblings}",
+                quoted(path)
             );
         }
     }
@@ -185,18 +174,6 @@ fn unknown(spec: &Spec, path: &str) -> String {
         "the scene has no value {}; `check --paths` lists them all",
         quoted(path)
     )
-}
-
-fn first_of(names: &[&str]) -> String {
-    const MOST: usize = 8;
-    let more = if names.len() > MOST { ", …" } else { "" };
-    names
-        .iter()
-        .take(MOST)
-        .copied()
-        .collect::<Vec<_>>()
-        .join(", ")
-        + more
 }
 
 /// Visits every scalar in file order. Omitted fields of slave groups and of the history whose default depends on other values are

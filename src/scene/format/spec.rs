@@ -10,12 +10,11 @@ use super::given::{Cells, NodeSet, SideSet};
 use super::in_space::SpaceSpec;
 pub use super::loads::{LoadSpec, Scale};
 pub use super::monitor::{MonitorSpec, Quantity};
-use stickslip_core::model::{
-    Component, Control, ElementKind, InitialState, Jumps, Law, Plane, SlavePoints, Update, least,
-    on_leg,
-};
+use stickslip_core::model::{SlavePoints, least, on_leg};
 use stickslip_core::words::is_default;
-use stickslip_core::{Mode, Settings};
+use stickslip_core::{
+    Component, Control, ElementKind, InitialState, Jumps, Law, Mode, Plane, Settings, Update,
+};
 
 /// A point or a vector in the plane, `(x, y)`, in the scene's unit of length.
 pub type Point = (f64, f64);

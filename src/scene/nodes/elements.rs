@@ -2,9 +2,9 @@
 
 use super::super::geometry::Folds;
 use crate::format::error::{Fault, Path, bail, fault};
-use stickslip_core::model::{ElementKind, Node};
+use crate::joined;
 use stickslip_core::plane::minus;
-use stickslip_core::words::counted;
+use stickslip_core::{ElementKind, Node, counted};
 
 /// An element: its kind and its node numbers, anticlockwise.
 pub(crate) type Element = (ElementKind, Vec<usize>);
@@ -61,8 +61,7 @@ pub(super) fn sound(
 
 /// Names of some nodes, joined.
 pub(super) fn named(nodes: &[Node], some: &[usize]) -> String {
-    let names: Vec<&str> = some.iter().map(|&n| nodes[n].name.as_str()).collect();
-    names.join(", ")
+    joined(some.iter().map(|&n| &nodes[n].name), ", ")
 }
 
 /// Twice the area of a polygon; positive if anticlockwise.

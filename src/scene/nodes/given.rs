@@ -10,7 +10,7 @@ use crate::format::error::{Fault, Path, at, bail, fault, quoted};
 use crate::format::given::{Cells, NodeSet, SideSet};
 use crate::format::spec::Nodes;
 use std::collections::HashMap;
-use stickslip_core::model::Node;
+use stickslip_core::Node;
 
 impl Names {
     /// Adds a mesh given node by node: the whole mesh, then its parts, sets and sides.

@@ -3,10 +3,11 @@
 use super::{EntryKind, NameEntry, Names};
 use crate::format::error::{Fault, Path, at, bail, fault};
 use crate::format::spec::Nodes;
+use crate::groups::Connected;
 use crate::number::sig4;
 use std::collections::HashSet;
+use stickslip_core::counted;
 use stickslip_core::plane::distance;
-use stickslip_core::words::counted;
 
 impl Names {
     /// Adds a mesh of several blocks, and returns the node pairs that its joints merge: the node that stays and the one that is
@@ -145,21 +146,12 @@ impl Names {
         if twins.is_empty() {
             return;
         }
-        let mut root: Vec<usize> = (0..self.nodes.len()).collect();
-        fn find(root: &[usize], mut n: usize) -> usize {
-            while root[n] != n {
-                n = root[n];
-            }
-            n
-        }
-        for &(a, b) in twins {
-            let (a, b) = (find(&root, a), find(&root, b));
-            root[a.max(b)] = a.min(b);
-        }
-        let mut number = vec![0; root.len()];
-        let mut kept = Vec::with_capacity(root.len());
+        let mut groups = Connected::new(self.nodes.len());
+        twins.iter().for_each(|&(a, b)| groups.join(a, b));
+        let mut number = vec![0; self.nodes.len()];
+        let mut kept = Vec::with_capacity(self.nodes.len());
         for (n, node) in std::mem::take(&mut self.nodes).into_iter().enumerate() {
-            let first = find(&root, n);
+            let first = groups.root(n);
             if first == n {
                 number[n] = kept.len();
                 kept.push(node);

@@ -8,7 +8,7 @@ use super::super::limits;
 use super::{EntryKind, Names};
 use crate::format::error::{Fault, at, bail};
 use crate::format::spec::{Nodes, Point};
-use stickslip_core::model::Node;
+use stickslip_core::Node;
 
 impl Names {
     pub(super) fn generate(

@@ -3,8 +3,9 @@
 use super::given::nodes_of;
 use super::{EntryKind, Mesh, NameEntry, Names};
 use crate::format::error::{did_you_mean, none_called, quoted, some_of};
+use crate::joined;
 use crate::shown::first_of;
-use stickslip_core::words::counted;
+use stickslip_core::counted;
 
 impl Names {
     /// Number of a node by any of its names.
@@ -326,14 +327,13 @@ impl NameEntry {
     fn labelled(&self, label: usize) -> Result<usize, String> {
         self.labels.binary_search(&label).map_err(|place| {
             let near = place.saturating_sub(1)..self.labels.len().min(place + 1);
-            let near: Vec<String> = self.labels[near]
-                .iter()
-                .map(|l| format!("{}.{l}", self.id))
-                .collect();
+            let near = joined(
+                self.labels[near].iter().map(|l| format!("{}.{l}", self.id)),
+                " and ",
+            );
             format!(
                 "mesh {:?} has no node with the label {label}; its neighbours are {}",
-                self.id,
-                near.join(" and ")
+                self.id, near
             )
         })
     }

@@ -20,7 +20,7 @@ use crate::format::error::{Fault, at};
 use crate::format::spec::Nodes;
 use checks::{check_ids, check_total};
 use elements::Element;
-use stickslip_core::model::{ElementKind, Node};
+use stickslip_core::{ElementKind, Node};
 
 use sides::SideLine as Sides;
 use std::collections::HashMap;

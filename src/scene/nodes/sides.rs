@@ -2,11 +2,11 @@
 
 use super::elements::{Element, named};
 use crate::format::error::{Fault, Path, bail};
+use crate::groups::marked;
 use crate::shown::first_of;
 use std::collections::{HashMap, HashSet};
 use stickslip_core::fem::lagrange::MAX_NODES;
-use stickslip_core::model::Node;
-use stickslip_core::words::counted;
+use stickslip_core::{Node, counted};
 
 /// Sides in walking order.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -76,8 +76,7 @@ impl Faces {
     pub fn among<'a>(named: impl Iterator<Item = &'a usize>, elements: &[Element]) -> Faces {
         let named: HashSet<usize> = named.copied().collect();
         let last = named.iter().max().map_or(0, |n| n + 1);
-        let mut is_named = vec![false; last];
-        named.iter().for_each(|&n| is_named[n] = true);
+        let is_named = marked(last, &named);
         let has = |n: usize| is_named.get(n) == Some(&true);
         let mut faces = Faces {
             middles: HashMap::new(),

@@ -18,8 +18,9 @@ use super::{compliance, entries_fit, fits};
 use crate::SceneError;
 use crate::format::condensed::{Matrix, Problem};
 use crate::format::read;
+use crate::joined;
 use std::path::{Path, PathBuf};
-use stickslip_core::words::counted;
+use stickslip_core::counted;
 use stickslip_exchange::matrix_market;
 use stickslip_platform::input;
 
@@ -144,12 +145,12 @@ fn column(
     let read = matrix_market::read(&text).map_err(|broken| read::of_file(&file, broken))?;
     let size = read.rows.max(read.columns);
     if read.rows.min(read.columns) != 1 || !sizes.contains(&size) {
-        let sizes: Vec<String> = sizes.iter().map(usize::to_string).collect();
+        let sizes = joined(sizes, " or ");
         let why = format!(
             "{part} has {} and {}; it must be a column of {} numbers",
             counted(read.rows, "row"),
             counted(read.columns, "column"),
-            sizes.join(" or ")
+            sizes
         );
         return Err(SceneError::whole(&file, why));
     }

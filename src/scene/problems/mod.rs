@@ -18,9 +18,9 @@ use crate::SceneError;
 use crate::format::condensed::Matrix;
 use crate::format::{error, read};
 use std::path::Path;
+use stickslip_core::counted;
 use stickslip_core::linear::estimate::sparse_bytes;
 use stickslip_core::linear::sparse_contacts::FEW;
-use stickslip_core::words::counted;
 use stickslip_exchange::problem;
 use stickslip_platform::input;
 

@@ -10,8 +10,8 @@
 use crate::format::condensed::{Contact, Problem};
 use crate::limits;
 use stickslip_core::linear::sparse_contacts::FEW;
-use stickslip_core::model::{InitialState, LinearSolver};
-use stickslip_core::{Friction, Mode, Settings, Strategy};
+use stickslip_core::model::LinearSolver;
+use stickslip_core::{Friction, InitialState, Mode, Settings, Strategy};
 use stickslip_exchange::FormatError;
 use stickslip_exchange::problem::{self, Local};
 use stickslip_exchange::siconos;

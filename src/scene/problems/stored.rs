@@ -18,7 +18,7 @@ use crate::format::read;
 use crate::format::stored::{RigidContact, Stored};
 use crate::scene::placed;
 use std::collections::HashMap;
-use stickslip_core::model::InitialState;
+use stickslip_core::InitialState;
 use stickslip_exchange::calculix::stiffness::{self, MatrixUnknown};
 use stickslip_exchange::problem;
 use stickslip_platform::input;

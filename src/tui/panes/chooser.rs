@@ -58,7 +58,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, chooser: &Chooser, app: &App) -> Re
     let top = (at + 1).saturating_sub(room);
     let lines: Vec<Line> = lines.into_iter().skip(top).collect();
     if left.is_empty() {
-        let text = " no name or title contains these words; Esc clears them";
+        let text = "no name or title contains these words; Esc clears them";
         paint::note(buffer, list, text, &app.theme);
     } else {
         paint::lines(buffer, list, &lines)

@@ -18,7 +18,7 @@ use std::f64::consts::TAU;
 use stickslip_core::ContactRecord;
 use stickslip_core::contact::projection::tangent;
 use stickslip_debugger::explain::tested;
-use stickslip_debugger::explain::trail::{self, Cone, TrailPoint};
+use stickslip_debugger::explain::trail::{self, Cobweb, Cone, TrailPoint};
 use stickslip_scene::number::{UNREPORTED, sig2, sig4};
 use unicode_width::UnicodeWidthStr;
 
@@ -59,16 +59,9 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         &format!("Contact  {name}"),
         app,
     );
-    let say = |buffer: &mut Buffer, text: &str| {
-        paint::lines(
-            buffer,
-            inner,
-            &paint::wrapped(text, inner.width.into(), theme.faint),
-        );
-    };
     let hidden = app.learning.hides(view, slave);
     let Some(record) = view.record(slave).filter(|_| view.model.finished.is_none()) else {
-        return say(buffer, "No iteration yet.");
+        return paint::note(buffer, inner, "No iteration yet.", theme);
     };
     let mut lines = words(record, slave, inner.width.into(), app, view);
     let rows = inner.height.saturating_sub(HIGH);
@@ -229,18 +222,11 @@ fn draw_cone(
     let theme = &app.theme;
     let area = headed(buffer, area, "Coulomb cone", app);
     let (Some(cone), false) = (cone, trail.is_empty()) else {
-        return paint::note(buffer, area, " no force", theme);
+        return paint::note(buffer, area, "no force", theme);
     };
     let frame = ChartFrame::within(area, LABELS);
     let mut canvas = Canvas::new(frame.field);
-    let [width, height] = canvas.size();
-    let dot = |[f_t, f_n]: [f64; 2]| -> Dot {
-        let (x, y) = (
-            0.5 + 0.5 * f_t / cone.f_t,
-            (f_n - cone.least) / (cone.f_n - cone.least),
-        );
-        [0.5 + x * (width - 1.0), height - 0.5 - y * (height - 1.0)]
-    };
+    let dot = canvas.scale([-cone.f_t, cone.f_t], [cone.least, cone.f_n]);
     canvas.line(dot([0.0, cone.least]), dot([0.0, cone.f_n]), theme.faint);
     canvas.line(dot([-cone.f_t, 0.0]), dot([cone.f_t, 0.0]), theme.faint);
     let [tip, end] = cone.edge;
@@ -279,9 +265,7 @@ fn draw_trail(
         } else {
             ("○", theme.mode(point.mode))
         };
-        if let Some(cell) = canvas.cell(*at).and_then(|at| buffer.cell_mut(at)) {
-            paint::mark(cell, glyph, style);
-        }
+        canvas.mark(buffer, *at, glyph, style);
     }
 }
 
@@ -299,7 +283,7 @@ fn circle(
     let sizes = trail.iter().map(|point| point.f_t).chain([radius]);
     let reach = 1.15 * sizes.filter(|size| size.is_finite()).fold(0.0, f64::max);
     if forces.is_empty() || reach <= 0.0 {
-        return paint::note(buffer, area, " no friction", theme);
+        return paint::note(buffer, area, "no friction", theme);
     }
     let mut canvas = Canvas::new(area);
     let [width, height] = canvas.size();
@@ -336,53 +320,39 @@ fn cobweb(buffer: &mut Buffer, area: Rect, trail: &[TrailPoint], app: &App, view
         None => "T_max by iteration".into(),
     };
     let area = headed(buffer, area, &heading, app);
-    let (origin, path) = trail::cobweb(trail);
-    let values = || path.iter().flatten().copied();
-    let (low, high) = (
-        values().fold(f64::INFINITY, f64::min),
-        values().fold(f64::NEG_INFINITY, f64::max),
-    );
-    let least = view.event().map_or(0.0, |event| 1e-12 * event.before.scale);
-    // An empty path has no width.
-    if path.is_empty() || high - low <= least {
+    let scale = view.event().map_or(0.0, |event| event.before.scale);
+    let Cobweb {
+        origin,
+        path,
+        range,
+    } = trail::cobweb(trail, scale);
+    let Some([low, high]) = range else {
         let text = match trail.last() {
-            Some(point) if high >= low => format!(" T_max has settled at {}", sig4(point.t_max)),
+            Some(point) if !path.is_empty() => {
+                format!(" T_max has settled at {}", sig4(point.t_max))
+            }
             _ => " used only while the node slides".into(),
         };
-        let lines = paint::wrapped(&text, area.width.into(), theme.faint);
-        return paint::lines(buffer, area, &lines);
-    }
-    let margin = 0.06 * (high - low);
-    let (low, high) = (low - margin, high + margin);
+        return paint::note(buffer, area, &text, theme);
+    };
     let frame = ChartFrame::within(area, LABELS);
     let mut canvas = Canvas::new(frame.field);
-    let [width, height] = canvas.size();
-    let part = |value: f64| (value - low) / (high - low);
-    let dot = |[used, found]: [f64; 2]| -> Dot {
-        [
-            0.5 + part(used) * (width - 1.0),
-            height - 0.5 - part(found) * (height - 1.0),
-        ]
-    };
+    let dot = canvas.scale([low, high], [low, high]);
     canvas.line(dot([low, low]), dot([high, high]), theme.faint);
     let dots: Vec<Dot> = path.iter().map(|point| dot(*point)).collect();
     canvas.polyline(&dots, theme.text);
     canvas.render(buffer);
-    let last = trail
-        .last()
-        .map(|point| [point.t_max_used - origin, point.t_max - origin]);
-    let now = last.and_then(|last| canvas.cell(dot(last)));
-    if let Some(cell) = now.and_then(|at| buffer.cell_mut(at)) {
-        paint::mark(cell, "●", theme.strong);
+    if let Some(now) = trail.last() {
+        let now = [now.t_max_used, now.t_max].map(|value| value - origin);
+        canvas.mark(buffer, dot(now), "●", theme.strong);
     }
     frame.axis(buffer, theme.faint);
     frame.tick(buffer, 0, &sig2(high), theme.faint);
     let bottom = frame.field.height - 1;
     frame.tick(buffer, bottom, &sig2(low), theme.faint);
-    let name = if origin == 0.0 {
-        "used".to_owned()
-    } else {
-        format!("less {}", sig4(origin))
+    let name = match origin {
+        0.0 => "used".to_owned(),
+        _ => format!("less {}", sig4(origin)),
     };
     below(buffer, frame, [low, high], &name, app);
 }
@@ -399,13 +369,7 @@ fn pushes(
     let quantity = tested::deciding(&record.decision);
     let (symbol, _) = tested::effect(quantity, &Default::default());
     let area = headed(buffer, area, &format!("Who pushed it: {symbol}"), app);
-    let none = |buffer: &mut Buffer, text: &str| {
-        paint::lines(
-            buffer,
-            area,
-            &paint::wrapped(text, area.width.into(), theme.faint),
-        );
-    };
+    let none = |buffer: &mut Buffer, text: &str| paint::note(buffer, area, text, theme);
     let Some(Some(found)) = view.pushes(slave) else {
         return none(buffer, "not known here");
     };

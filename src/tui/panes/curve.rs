@@ -13,7 +13,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
 use stickslip_debugger::history::frame;
-use stickslip_scene::number::{shortest, sig2, sig6};
+use stickslip_scene::{shortest, sig2, sig6};
 
 /// Width of the axis with its labels.
 const LABELS: u16 = 9;
@@ -44,11 +44,11 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         paint::note(buffer, inner, text, theme);
     };
     if monitors.is_empty() {
-        return say(buffer, " This scene has no monitors.");
+        return say(buffer, "This scene has no monitors.");
     }
     let points = frame::curve(&view.frames[..=view.cursor], at);
     let Some([value, load]) = points.last() else {
-        return say(buffer, " No increment accepted yet.");
+        return say(buffer, "No increment accepted yet.");
     };
     let caption = Line::from(vec![
         Span::styled(" ● ", theme.strong),
@@ -99,14 +99,7 @@ fn chart(
     let field = frame.field;
     let (x, y) = (span(known, 0, noise), span(known, 1, 0.0));
     let mut canvas = Canvas::new(field);
-    let [width, height] = canvas.size();
-    let part = |value: f64, [low, high]: [f64; 2]| (value - low) / (high - low);
-    let dot = |[value, load]: [f64; 2]| {
-        [
-            0.5 + part(value, x) * (width - 1.0),
-            height - 0.5 - part(load, y) * (height - 1.0),
-        ]
-    };
+    let dot = canvas.scale(x, y);
     if x[0] < 0.0 && x[1] > 0.0 {
         canvas.line(dot([0.0, y[0]]), dot([0.0, y[1]]), theme.faint);
     }
@@ -119,9 +112,8 @@ fn chart(
         canvas.dot(*dot, theme.text);
     }
     canvas.render(buffer);
-    let now = dots.last().and_then(|dot| canvas.cell(*dot));
-    if let Some(cell) = now.and_then(|at| buffer.cell_mut(at)) {
-        paint::mark(cell, "●", theme.strong);
+    if let Some(now) = dots.last() {
+        canvas.mark(buffer, *now, "●", theme.strong);
     }
     axes(buffer, frame, x, y, theme);
 }

@@ -337,19 +337,13 @@ fn measured(
         ]
     });
     let heading = Line::styled(" Values of this minor iteration", theme.heading);
-    let row = |(mut name, mut value, meaning): (&'static str, String, &str)| {
-        let meaning = paint::wrap(meaning, width.saturating_sub(NAME + VALUE + 4));
-        let part = |part: String| {
-            Line::from(vec![
-                Span::styled(
-                    format!("   {:<NAME$}", std::mem::take(&mut name)),
-                    theme.key,
-                ),
-                Span::raw(format!("{:<VALUE$}", std::mem::take(&mut value))),
-                Span::styled(part, theme.faint),
-            ])
-        };
-        meaning.into_iter().map(part).collect::<Vec<_>>()
+    let row = |(name, value, meaning): (&str, String, &str)| {
+        let lead = [
+            Span::styled(format!("   {name:<NAME$}"), theme.key),
+            Span::raw(format!("{value:<VALUE$}")),
+        ];
+        let room = width.saturating_sub(NAME + VALUE + 4);
+        paint::hanging(&lead, meaning, room, theme.faint)
     };
     [heading]
         .into_iter()

@@ -185,20 +185,13 @@ fn hang(
     (width, style, lead): (usize, Style, &str),
     app: &App,
 ) {
-    let indent = lead.width();
-    let wrapped = paint::wrap(text, width.saturating_sub(HEADINGS + 1 + indent));
-    for (k, part) in wrapped.into_iter().enumerate() {
-        let heading = if k == 0 { heading } else { "" };
-        let part = match k {
-            0 => format!("{lead}{part}"),
-            _ => format!("{:indent$}{part}", ""),
-        };
-        let heading = format!(" {heading:<width$}", width = HEADINGS - 1);
-        lines.push(Line::from(vec![
-            Span::styled(heading, app.theme.heading),
-            Span::styled(part, style),
-        ]));
-    }
+    let room = width.saturating_sub(HEADINGS + 1 + lead.width());
+    let heading = format!(" {heading:<width$}", width = HEADINGS - 1);
+    let lead = [
+        Span::styled(heading, app.theme.heading),
+        Span::styled(lead.to_owned(), style),
+    ];
+    lines.extend(paint::hanging(&lead, text, room, style));
 }
 
 /// Adds a line below a heading; its further lines are indented.
@@ -328,7 +321,7 @@ fn cell(answer: &NodeAnswer, app: &App) -> [Span<'static>; 2] {
         stickslip_core::interface::problem::AssumedMode::Fixed => "X ",
     };
     let last = match mode {
-        stickslip_core::model::Mode::Free => answer.gap,
+        stickslip_core::Mode::Free => answer.gap,
         _ => answer.slip,
     };
     let numbers = [answer.f_n, answer.f_t, last].map(|value| number::fixed_width(value, 10));

@@ -11,6 +11,7 @@ use ratatui::text::{Line, Span};
 use stickslip_debugger::action::config;
 use stickslip_debugger::action::{ACTIONS, Context, Group, Keymap};
 use stickslip_manual::search::Search;
+use stickslip_scene::joined;
 
 /// The marks on the screen.
 const MARKS: &[(&str, &str)] = &[
@@ -154,12 +155,12 @@ pub fn page(width: usize, theme: &Theme, keymap: &Keymap, context: &Context) -> 
         None => Vec::new(),
     };
     let first = || ACTIONS.iter().filter(|entry| FIRST.contains(&entry.name));
-    let panes: Vec<&str> = Pane::ALL.into_iter().map(Pane::title).collect();
+    let panes = joined(Pane::ALL.into_iter().map(Pane::title), ", ");
     let groups = Group::ALL.into_iter().map(|group| {
         let entries = ACTIONS.iter().filter(|entry| entry.group == group);
         (group.title(), entries.collect::<Vec<_>>())
     });
-    let text = format!("Panes, in the order of Tab: {}.", panes.join(", "));
+    let text = format!("Panes, in the order of Tab: {panes}.");
     lines.extend(paint::wrapped(&text, width, theme.text));
     lines.push(Line::default());
     for (title, entries) in [("The first ten keys", first().collect())]
@@ -177,34 +178,20 @@ pub fn page(width: usize, theme: &Theme, keymap: &Keymap, context: &Context) -> 
                     [theme.faint; 2],
                 ),
             };
-            for (index, help) in paint::wrap(&help, room).into_iter().enumerate() {
-                let (keys, name) = if index == 0 {
-                    let keys: Vec<&str> = keymap.keys(entry).collect();
-                    (keys.join(" "), name.as_str())
-                } else {
-                    Default::default()
-                };
-                lines.push(Line::from(vec![
-                    Span::styled(format!("   {keys:<KEYS$}"), key_style),
-                    Span::styled(format!("{name:<NAMES$}"), style),
-                    Span::styled(help, style),
-                ]));
-            }
+            let keys = joined(keymap.keys(entry), " ");
+            let lead = [
+                Span::styled(format!("   {keys:<KEYS$}"), key_style),
+                Span::styled(format!("{name:<NAMES$}"), style),
+            ];
+            lines.extend(paint::hanging(&lead, &help, room, style));
         }
         lines.push(Line::default());
     }
     lines.push(Line::styled(" Marks", theme.heading));
+    let room = width.saturating_sub(3 + KEYS + 1).max(20);
     for (mark, meaning) in MARKS {
-        for (index, meaning) in paint::wrap(meaning, width.saturating_sub(3 + KEYS + 1).max(20))
-            .into_iter()
-            .enumerate()
-        {
-            let mark = if index == 0 { mark } else { "" };
-            lines.push(Line::from(vec![
-                Span::styled(format!("   {mark:<KEYS$}"), theme.key),
-                Span::raw(meaning),
-            ]));
-        }
+        let lead = Span::styled(format!("   {mark:<KEYS$}"), theme.key);
+        lines.extend(paint::hanging(&[lead], meaning, room, theme.text));
     }
     lines
 }

@@ -12,7 +12,6 @@ use ratatui::style::Style;
 use ratatui::text::{Line, Span};
 use stickslip_debugger::Tutor;
 use stickslip_debugger::teach::tutor::Paragraph;
-use stickslip_scene::shown;
 use unicode_width::UnicodeWidthStr;
 
 /// Rows that the lesson needs at a width, with border; 0 without a lesson.
@@ -143,17 +142,6 @@ fn paragraph(part: &Paragraph, width: usize, theme: &Theme) -> paint::Lines {
 
 /// A paragraph whose lines after the first are indented by the width of the mark.
 fn wrapped(mark: &str, text: &str, width: usize, style: Style) -> paint::Lines {
-    let indent = mark.width();
-    let lines = paint::wrap(text, width.saturating_sub(2 + indent));
-    lines
-        .into_iter()
-        .enumerate()
-        .map(|(index, words)| {
-            let mark = if index == 0 { mark } else { "" };
-            Line::from(vec![
-                Span::styled(format!(" {}", shown::padded(mark, indent)), style),
-                Span::styled(words, style),
-            ])
-        })
-        .collect()
+    let lead = Span::styled(format!(" {mark}"), style);
+    paint::hanging(&[lead], text, width.saturating_sub(2 + mark.width()), style)
 }

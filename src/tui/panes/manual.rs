@@ -43,7 +43,11 @@ impl Reader {
     /// Handles a key; returns false if it closes the page.
     pub fn key(&mut self, name: &str) -> bool {
         if let Some(go) = self.search.key(name) {
-            let lines: Vec<String> = self.lines.iter().map(|line| line.text()).collect();
+            let lines: Vec<String> = self
+                .lines
+                .iter()
+                .map(stickslip_manual::render::Line::text)
+                .collect();
             self.top = self.search.find(go, self.top, &lines).unwrap_or(self.top);
             return true;
         }

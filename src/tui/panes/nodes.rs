@@ -126,7 +126,7 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let title = title(at, order.len(), count, app);
     let inner = frame(buffer, area, Pane::Nodes, &title, app);
     if count == 0 {
-        paint::note(buffer, inner, " This scene has no slave nodes.", &app.theme);
+        paint::note(buffer, inner, "This scene has no slave nodes.", &app.theme);
         return;
     }
     let longest = (0..count)

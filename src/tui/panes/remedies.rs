@@ -50,7 +50,7 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let tried = view.background.and_then(|background| background.tried());
     let Some(tried) = tried else {
         let inner = frame(buffer, area, Pane::Remedies, "Remedies", app);
-        let text = " Press r to try every remedy separately from the shown state.";
+        let text = "Press r to try every remedy separately from the shown state.";
         paint::note(buffer, inner, text, theme);
         return;
     };
@@ -62,7 +62,7 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let inner = frame(buffer, area, Pane::Remedies, &title, app);
     let trying = view
         .background
-        .is_some_and(|background| background.is_trying());
+        .is_some_and(stickslip_debugger::session::background::Background::is_trying);
     let count = tried.trials.len();
     let state = match (trying, tried.all) {
         (true, Some(all)) => format!("{count} of {all} tried; Ctrl-C stops; now: {}", tried.now),

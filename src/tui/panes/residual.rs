@@ -39,7 +39,7 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     };
     let inner = frame(buffer, area, Pane::Residual, title, app);
     let Some((_, last)) = view.residuals.last() else {
-        paint::note(buffer, inner, " No iteration yet.", theme);
+        paint::note(buffer, inner, "No iteration yet.", theme);
         return;
     };
     let words = |value: f64| short(value, view);

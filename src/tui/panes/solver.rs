@@ -10,15 +10,13 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
 use ratatui::text::Line;
-use stickslip_core::Parameter;
 use stickslip_core::step::intervene::Value;
-use stickslip_core::words::counted;
+use stickslip_core::{Parameter, counted};
 use stickslip_debugger::action::present;
 use stickslip_debugger::recorded::log::LogOrigin;
 use stickslip_exchange::attach::message::Level;
 use stickslip_manual::search::Search;
-use stickslip_scene::number;
-use stickslip_scene::shown;
+use stickslip_scene::{number, shown};
 
 /// Rows and columns per page key.
 const PAGE: usize = 10;

@@ -8,13 +8,12 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
 use ratatui::text::{Line, Span};
-use stickslip_core::words::counted;
-use stickslip_core::{Event, Forced, Model, Outcome, RewindSupport, Status, Strategy};
+use stickslip_core::{Event, Forced, Model, Outcome, RewindSupport, Status, Strategy, counted};
 use stickslip_debugger::DiagnosisPage;
 use stickslip_debugger::action::by_name;
 use stickslip_debugger::explain::names;
 use stickslip_debugger::explain::report;
-use stickslip_scene::number;
+use stickslip_scene::{joined, number};
 use unicode_width::UnicodeWidthStr;
 
 /// Draws the status. Lines that do not fit cover the rows below.
@@ -261,12 +260,14 @@ fn outcome(app: &App, view: &View, width: u16) -> paint::Lines {
     // Further lines are indented to the words after the glyph.
     let room = (width as usize).saturating_sub(4);
     let mut words = paint::wrap(&text, room);
-    let asides: Vec<String> = tried
-        .into_iter()
-        .chain(interventions(view))
-        .filter(|aside| !text.ends_with(aside))
-        .collect();
-    let aside = paint::cut(&asides.join("   "), room);
+    let asides = joined(
+        tried
+            .into_iter()
+            .chain(interventions(view))
+            .filter(|aside| !text.ends_with(aside)),
+        "   ",
+    );
+    let aside = paint::cut(&asides, room);
     // A long aside needs a line; a short one needs the end of the last line.
     let (most, end) = match aside.width() {
         0 => (OUTCOME, 0),
@@ -389,6 +390,6 @@ fn interventions(view: &View) -> Option<String> {
         friction.then(|| "friction changed".into()),
         settings,
     ];
-    let parts: Vec<String> = parts.into_iter().flatten().collect();
-    (!parts.is_empty()).then(|| parts.join("  "))
+    let parts = joined(parts.into_iter().flatten(), "  ");
+    (!parts.is_empty()).then_some(parts)
 }

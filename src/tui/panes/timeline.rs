@@ -271,7 +271,9 @@ fn cell(strip: &Strip, slave: usize, finished: bool, app: &App) -> (&'static str
     }
     let letter = match (mode, forced) {
         (Mode::Free, false) => "F",
-        (Mode::Sliding, false) => strip.direction(slave).map_or("S", names::arrow),
+        (Mode::Sliding, false) => strip
+            .direction(slave)
+            .map_or("S", |degrees| names::arrow(f64::from(degrees).to_radians())),
         (Mode::Fixed, false) if strip.in_corner(slave) => "V",
         (Mode::Fixed, false) => "X",
         (Mode::Free, true) => "f",

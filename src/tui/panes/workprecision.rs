@@ -13,8 +13,8 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
 use ratatui::text::{Line, Span};
-use stickslip_core::words::counted;
-use stickslip_scene::number;
+use stickslip_core::counted;
+use stickslip_scene::{joined, number};
 use stickslip_study::log_axis::{LogAxis, written};
 use stickslip_study::precision::{Point, Precision, ROUND_OFF};
 
@@ -244,7 +244,7 @@ fn details(page: &ChartPage, theme: &Theme, width: usize, has_legend: bool) -> p
             .iter()
             .enumerate()
             .map(|(k, name)| format!("{} {name}", letter(k, false)));
-        paint::wrapped(&names.collect::<Vec<_>>().join("  "), width, theme.faint)
+        paint::wrapped(&joined(names, "  "), width, theme.faint)
     };
     lines.into_iter().chain(last).collect()
 }

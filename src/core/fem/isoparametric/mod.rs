@@ -109,13 +109,22 @@ fn slope<const N: usize>(grad: &[[f64; 2]; N], u: &[[f64; 2]; N]) -> [[f64; 2]; 
     h
 }
 
-/// H at a point of the parent element. `None` if the undeformed element has no area.
+/// H at a point of the parent element, from the undeformed positions of the nodes and their displacements. `None` if the undeformed
+/// element has no area.
 pub(super) fn slope_at<const N: usize>(
     parent: &Parent<N>,
-    at: &[[f64; 2]; N],
-    u: &[[f64; 2]; N],
+    nodes: &[[f64; 4]; N],
 ) -> Option<[[f64; 2]; 2]> {
-    let (by_x, by_u) = (slope(&parent.d, at), slope(&parent.d, u));
+    let mut by = [[0.0; 4]; 2];
+    for (node, d) in nodes.iter().zip(&parent.d) {
+        for (sums, d) in by.iter_mut().zip(d) {
+            for (sum, x) in sums.iter_mut().zip(node) {
+                *sum += d * x;
+            }
+        }
+    }
+    let rows = |first: usize| [first, first + 1].map(|k| [by[0][k], by[1][k]]);
+    let (by_x, by_u) = (rows(0), rows(2));
     let (inverse, det) = inverse(by_x);
     let size = by_x.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
     let row = |by_u: [f64; 2]| [0, 1].map(|b| by_u[0] * inverse[0][b] + by_u[1] * inverse[1][b]);

@@ -1,13 +1,12 @@
 //! Charts in a picture: the load over a monitor, and the force of a contact in its friction cone with T_max by iteration.
 
 use super::export_state::ExportState;
-use super::timeline::colour;
+use super::timeline::marker;
 use crate::RoundOff;
 use crate::explain::names;
 use crate::explain::trail::{self, Cone, TrailPoint};
-use stickslip_core::model::MonitorQuantity;
-use stickslip_core::words::counted;
-use stickslip_scene::number::{sig4, sig6};
+use stickslip_core::{MonitorQuantity, counted};
+use stickslip_scene::{sig4, sig6};
 use stickslip_study::drawn::PlotError;
 use stickslip_study::linear_axis;
 use stickslip_study::sheet::{Axes, BLACK, COLOURS, GREY, LABEL, MARGIN, SMALL, Sheet};
@@ -171,15 +170,9 @@ pub(super) fn cone(sheet: &mut Sheet, shown: &ExportState, high: f64) -> Result<
     );
     sheet.paragraph(&[words], LABEL, BLACK)?;
     let width = sheet.width;
-    let (origin, web) = trail::cobweb(&trail);
-    let (low, top) = web
-        .iter()
-        .flatten()
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| {
-            (a.min(*x), b.max(*x))
-        });
-    let has_web = top - low > shown.event.map_or(0.0, |event| 1e-12 * event.before.scale);
-    let middle = if has_web { 0.5 * width } else { width };
+    let scale = shown.event.map_or(0.0, |event| event.before.scale);
+    let web = trail::cobweb(&trail, scale);
+    let middle = web.range.map_or(width, |_| 0.5 * width);
     let cone = cone.to_scale(frame((0.0, middle), high), &friction);
     let ranges = (
         ("F_t", [-cone.f_t, cone.f_t]),
@@ -191,26 +184,19 @@ pub(super) fn cone(sheet: &mut Sheet, shown: &ExportState, high: f64) -> Result<
         sheet.line(&edge, 2.0, BLACK);
     }
     points(sheet, &trail, &map);
-    if has_web {
-        let margin = 0.06 * (top - low);
-        let span = [low - margin, top + margin];
-        let less = if origin == 0.0 {
-            String::new()
-        } else {
-            format!(" less {}", sig4(origin))
+    if let Some(span) = web.range {
+        let less = match web.origin {
+            0.0 => String::new(),
+            origin => format!(" less {}", sig4(origin)),
         };
         let (used, found) = (format!("T_max used{less}"), format!("T_max found{less}"));
         let ranges = ((used.as_str(), span), (found.as_str(), span));
         let map = axes(sheet, (middle, width), high, ranges);
         sheet.dashed(&[map([span[0]; 2]), map([span[1]; 2])], 1.2, GREY);
-        let path: Vec<(f64, f64)> = web.iter().map(|point| map(*point)).collect();
+        let path: Vec<(f64, f64)> = web.path.iter().map(|point| map(*point)).collect();
         sheet.line(&path, 2.0, COLOURS[0]);
-        sheet.marker(
-            map([now.t_max_used - origin, now.t_max - origin]),
-            0,
-            4.5,
-            COLOURS[0],
-        );
+        let now = [now.t_max_used, now.t_max].map(|value| value - web.origin);
+        sheet.marker(map(now), 0, 4.5, COLOURS[0]);
     }
     sheet.height += high;
     let key = format!(
@@ -229,16 +215,6 @@ fn points(sheet: &mut Sheet, trail: &[TrailPoint], map: &impl Fn([f64; 2]) -> (f
     sheet.line(&dots, 1.2, GREY);
     let last = trail.len().saturating_sub(1);
     for (k, (point, at)) in trail.iter().zip(&dots).enumerate() {
-        let kind = match point.mode {
-            stickslip_core::model::Mode::Free => 0,
-            stickslip_core::model::Mode::Fixed => 1,
-            stickslip_core::model::Mode::Sliding => 2,
-        };
-        sheet.ringed(
-            *at,
-            kind,
-            if k == last { 6.0 } else { 3.5 },
-            colour(point.mode),
-        );
+        marker(sheet, *at, point.mode, if k == last { 6.0 } else { 3.5 });
     }
 }

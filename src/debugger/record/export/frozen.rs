@@ -20,19 +20,17 @@ use crate::explain::names;
 use crate::history::verdicts;
 use std::ops::ControlFlow;
 use std::sync::Arc;
-use stickslip_core::model::{Bond, InitialState};
 use stickslip_core::plane::max_abs;
 use stickslip_core::strategy::method;
 use stickslip_core::{
-    ContactRecord, Cycle, Failure, Forced, InterfaceProblem, Mode, Model, Outcome, Position,
-    ProblemNode, RunEnd, Settings, Stepper, Trials, Until,
+    Bond, ContactRecord, Cycle, Failure, Forced, InitialState, InterfaceProblem, Mode, Model,
+    Outcome, Position, ProblemNode, RunEnd, Settings, Stepper, Trials, Until,
 };
 use stickslip_linalg::DenseFactors;
 use stickslip_scene::format::condensed::{Contact, Matrix, Problem};
 use stickslip_scene::format::read;
 use stickslip_scene::siconos::Friction2d;
-use stickslip_scene::{Scene, SceneError};
-use stickslip_scene::{limits, shown};
+use stickslip_scene::{Scene, SceneError, joined, limits, shown};
 
 /// If the inverse (relative to the springs) that yields one of the two matrices is larger than this, removing
 /// the springs loses too many digits.
@@ -172,12 +170,10 @@ pub fn core(
         ..core.cycle.clone()
     };
     let named = |slave: usize| names::slave(model, slave);
-    let names: Vec<&str> = core
-        .problem
-        .nodes
-        .iter()
-        .map(|node| named(node.slave))
-        .collect();
+    let names = joined(
+        core.problem.nodes.iter().map(|node| named(node.slave)),
+        ", ",
+    );
     let head = [
         "The core of a cycle: the smallest set of nodes that still cycles with all other modes frozen.".to_owned(),
         origin.words(),
@@ -186,9 +182,7 @@ pub fn core(
     ];
     let title = format!(
         "Core of {}: {}, period {}",
-        origin.scene,
-        names.join(", "),
-        core.cycle.period
+        origin.scene, names, core.cycle.period
     );
     let text = text(model, &core.on_cycle(), title, head.into())?;
     match cycle_of(&text)? {
@@ -228,13 +222,13 @@ pub fn whole(
         origin.words(),
     ];
     let gone = (0..problem.nodes.len()).filter(|place| !here.contains(place));
-    let gone: Vec<&str> = gone
-        .map(|place| names::slave(model, problem.nodes[place].slave))
-        .collect();
+    let gone = joined(
+        gone.map(|place| names::slave(model, problem.nodes[place].slave)),
+        ", ",
+    );
     if !gone.is_empty() {
         head.push(format!(
-            "Left out (past the ends of all surfaces, or fixed together with the surface): {}.",
-            gone.join(", ")
+            "Left out (past the ends of all surfaces, or fixed together with the surface): {gone}."
         ));
     }
     let problem = problem.reduced(&here).ok_or(NoExport::Singular)?;

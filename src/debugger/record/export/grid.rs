@@ -27,8 +27,9 @@
 use super::export_state::{ExportError, ExportState};
 use stickslip_core::fem::deformation;
 use stickslip_core::fem::recovery::{self, Configuration};
-use stickslip_core::model::{BodyKind, Component, ElementKind};
-use stickslip_core::{Event, Mode, Model, Position, State, Stepper};
+use stickslip_core::{
+    BodyKind, Component, ElementKind, Event, Mode, Model, Position, State, Stepper,
+};
 use stickslip_exchange::mesh::{Cell, CellKind};
 use stickslip_exchange::vtu::{self, Array, Grid, Values};
 
@@ -241,8 +242,7 @@ fn motion(model: &Model, state: &State, grid: &mut Grid) {
 }
 
 fn stresses(model: &Model, state: &State, grid: &mut Grid) {
-    let solid = |kind: &BodyKind| matches!(kind, BodyKind::Solid(_));
-    if !model.bodies.iter().any(|body| solid(&body.kind)) {
+    if !model.has_solids() {
         return;
     }
     let known = recovery::nodal_stresses(

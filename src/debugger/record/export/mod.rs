@@ -28,6 +28,7 @@ mod window;
 use export_state::{ExportError, ExportState};
 use std::path::{Path, PathBuf};
 use stickslip_core::Stepper;
+use stickslip_scene::joined;
 use stickslip_scene::problems::market;
 
 pub use frozen::{FileMismatch, NoExport, Origin, compared, core, whole, writable};
@@ -146,11 +147,12 @@ pub fn kind(file: &Path) -> Result<&'static ExportKind, ExportError> {
         .iter()
         .find(|kind| own.eq_ignore_ascii_case(kind.extension));
     found.ok_or_else(|| {
-        let known = KINDS
-            .iter()
-            .map(|k| format!(".{} ({})", k.extension, k.what))
-            .collect::<Vec<_>>()
-            .join(", ");
+        let known = joined(
+            KINDS
+                .iter()
+                .map(|k| format!(".{} ({})", k.extension, k.what)),
+            ", ",
+        );
         let file = file.display();
         ExportError::NoFile(format!("{file}: unknown file kind; available: {known}"))
     })

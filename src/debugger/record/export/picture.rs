@@ -6,17 +6,18 @@
 
 use super::chart;
 use super::export_state::{ExportError, ExportState, PicturePart};
-use super::timeline::{self, chosen, colour};
+use super::timeline::{self, chosen, marker};
 use super::window::{FORCE, Window};
 use crate::RoundOff;
 use crate::explain::conditions::{Given, conditions};
 use crate::explain::names;
 use crate::explain::outline::{self, Bounds, Point, Projection, curve, extent};
-use stickslip_core::model::{BodyKind, SolidElement};
+use stickslip_core::model::SolidElement;
 use stickslip_core::plane::distance;
-use stickslip_core::words::counted;
-use stickslip_core::{ContactRecord, Mode, Model, Outcome, Status, Stepper, SurfaceElement};
-use stickslip_scene::number::{shortest, sig4};
+use stickslip_core::{
+    Body, ContactRecord, Mode, Model, Outcome, Status, Stepper, SurfaceElement, counted,
+};
+use stickslip_scene::{shortest, sig4};
 use stickslip_study::drawn::PlotError;
 use stickslip_study::origin;
 use stickslip_study::placing::{OccupiedArea, Patch};
@@ -58,16 +59,6 @@ pub(super) fn png(shown: &ExportState, _: &mut Stepper) -> Result<Vec<u8>, Expor
         2.0
     };
     Ok(sheet(shown)?.png(pixels)?)
-}
-
-/// The marker of a mode: a circle for free, a triangle for sliding, a square for fixed.
-fn marker(sheet: &mut Sheet, at: (f64, f64), mode: Mode, r: f64) {
-    let kind = match mode {
-        Mode::Free => 0,
-        Mode::Sliding => 2,
-        Mode::Fixed => 1,
-    };
-    sheet.ringed(at, kind, r, colour(mode));
 }
 
 /// The picture as plain data.
@@ -293,10 +284,7 @@ impl ShapeDrawing<'_> {
                 .collect();
             self.line(&points, &before);
         }
-        for body in &model.bodies {
-            let BodyKind::Solid(solid) = &body.kind else {
-                continue;
-            };
+        for solid in model.bodies.iter().filter_map(Body::solid) {
             for SolidElement { kind, nodes, .. } in &solid.elements {
                 let across = kind.faces().len() / 2;
                 let (a, b) = ((self.now)(nodes[0]), (self.now)(nodes[across]));

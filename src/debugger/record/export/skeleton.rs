@@ -4,7 +4,7 @@
 //! The guesses are simple. The contact is between the two lines of different bodies whose nodes are closest on
 //! average. The lowest horizontal line is fixed; the highest one moves down by a hundredth of the height.
 
-use stickslip_core::plane::distance;
+use stickslip_core::plane::{distance, range};
 use stickslip_scene::nodes::lines::Line;
 use stickslip_scene::shown;
 use stickslip_scene::{Scene, SceneError};
@@ -39,14 +39,8 @@ struct OutlineGuess {
 
 impl OutlineGuess {
     fn new(lines: &[Line]) -> OutlineGuess {
-        let ends = |axis: usize| {
-            let all = || lines.iter().flat_map(|line| &line.at).map(|at| at[axis]);
-            (
-                all().fold(f64::INFINITY, f64::min),
-                all().fold(f64::NEG_INFINITY, f64::max),
-            )
-        };
-        let (low, high) = ends(1);
+        let heights = lines.iter().flat_map(|line| &line.at).map(|at| at[1]);
+        let [low, high] = range(heights);
         let height = high - low;
         let level = |y: f64| {
             lines
@@ -99,94 +93,67 @@ fn mean_distance(line: &Line, other: &Line) -> f64 {
 }
 
 fn text(file: &str, parts: &[String], lines: &[Line], guess: &OutlineGuess) -> String {
-    let mut out = String::new();
-    let mut put = |line: &str| {
-        out += line;
-        out.push('\n');
-    };
     let name = |k: usize| &lines[k].name;
-    put("(");
-    put(&format!(
-        "    title: {:?},",
+    let solid = |k: usize| {
+        let (id, part) = (body(parts, k), &parts[k]);
+        format!("        Solid(id: \"{id}\", mesh: \"{ID}.{part}\", material: \"material\"),\n")
+    };
+    let bodies: String = (0..parts.len()).map(solid).collect();
+    let mut out = format!(
+        "(\n    title: {:?},\n    nodes: [Import(id: {ID:?}, file: {file:?})],\n",
         format!("Mesh: {}", shown::cut(file, 80))
-    ));
-    put(&format!("    nodes: [Import(id: {ID:?}, file: {file:?})],"));
-    put("    // All numbers here are placeholders; E is a force per area.");
-    put("    materials: [Elastic(id: \"material\", E: 1000, nu: 0.3)],");
-    put("    bodies: [");
-    for (k, part) in parts.iter().enumerate() {
-        put(&format!(
-            "        Solid(id: \"{}\", mesh: \"{ID}.{part}\", material: \"material\"),",
-            body(parts, k)
-        ));
-    }
-    put("    ],");
+    );
+    out += "    // All numbers here are placeholders; E is a force per area.\n";
+    out += "    materials: [Elastic(id: \"material\", E: 1000, nu: 0.3)],\n";
+    out += &format!("    bodies: [\n{bodies}    ],\n");
     if !lines.is_empty() {
-        put(
-            "    // Lines for surfaces, slaves, supports and loads, each with its body on the left:",
-        );
-        for line in lines {
-            put(&format!("    //   {}", line.words));
-        }
+        out += "    // Lines for surfaces, slaves, supports and loads, each with its body on the left:\n";
     }
-    match guess.contact {
-        Some((slave, master)) => {
-            put("    // Guess: the closest lines of two bodies.");
-            put(&format!(
-                "    surfaces: [(id: \"master\", along: {:?})],",
-                name(master)
-            ));
-            put(&format!(
-                "    slaves: [(nodes: [{:?}], on: [\"master\"])],",
-                name(slave)
-            ));
-        }
-        None => {
-            put(&format!(
-                "    // surfaces: [(id: \"master\", along: \"{ID}.LINE\")],"
-            ));
-            put(&format!(
-                "    // slaves: [(nodes: [\"{ID}.LINE\"], on: [\"master\"])],"
-            ));
-        }
-    }
-    put("    friction: (angle: 0),");
-    match guess.held {
-        Some(held) => {
-            put("    // Guess: the lowest line is fixed.");
-            put(&format!(
-                "    supports: [(node: {:?}, fix: [x, y])],",
-                name(held)
-            ));
-        }
-        None => put(&format!(
-            "    // supports: [(node: \"{ID}.LINE\", fix: [x, y])],"
-        )),
-    }
-    match guess.pressed {
+    out.extend(
+        lines
+            .iter()
+            .map(|line| format!("    //   {}\n", line.words)),
+    );
+    out += &match guess.contact {
+        Some((slave, master)) => format!(
+            "    // Guess: the closest lines of two bodies.\n    surfaces: [(id: \"master\", along: {:?})],\n    slaves: [(nodes: [{:?}], on: [\"master\"])],\n",
+            name(master),
+            name(slave)
+        ),
+        None => format!(
+            "    // surfaces: [(id: \"master\", along: \"{ID}.LINE\")],\n    // slaves: [(nodes: [\"{ID}.LINE\"], on: [\"master\"])],\n"
+        ),
+    };
+    out += "    friction: (angle: 0),\n";
+    out += &match guess.held {
+        Some(held) => format!(
+            "    // Guess: the lowest line is fixed.\n    supports: [(node: {:?}, fix: [x, y])],\n",
+            name(held)
+        ),
+        None => format!("    // supports: [(node: \"{ID}.LINE\", fix: [x, y])],\n"),
+    };
+    out += &match guess.pressed {
         Some((pressed, far)) => {
-            put("    // Guess: the highest line is pressed down.");
-            put("    loads: [");
-            let line = name(pressed);
-            put(&format!(
-                "        Displacement(node: {line:?}, component: x, value: 0),"
-            ));
-            put(&format!(
-                "        Displacement(node: {line:?}, component: y, value: {:?}),",
-                -far
-            ));
-            put("    ],");
+            let motion = |axis: &str, value: &str| {
+                format!(
+                    "        Displacement(node: {:?}, component: {axis}, value: {value}),\n",
+                    name(pressed)
+                )
+            };
+            let motions = motion("x", "0") + &motion("y", &format!("{:?}", -far));
+            format!(
+                "    // Guess: the highest line is pressed down.\n    loads: [\n{motions}    ],\n"
+            )
         }
-        None => put(&format!(
-            "    // loads: [Displacement(node: \"{ID}.LINE\", component: y, value: -0.1)],"
-        )),
-    }
-    put("    history: (path: [0, 1], increment: 0.25),");
+        None => format!(
+            "    // loads: [Displacement(node: \"{ID}.LINE\", component: y, value: -0.1)],\n"
+        ),
+    };
+    out += "    history: (path: [0, 1], increment: 0.25),\n";
     if guess.contact.is_some() {
-        put("    monitors: [(name: \"force\", of: Contact(component: y))],");
+        out += "    monitors: [(name: \"force\", of: Contact(component: y))],\n";
     }
-    put(")");
-    out
+    out + ")\n"
 }
 
 /// The id of a body: the name of its part, restricted to the characters of an id.

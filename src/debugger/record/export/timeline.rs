@@ -4,7 +4,7 @@ use super::export_state::COLUMNS;
 use crate::explain::names;
 use crate::{PointKind, Strip};
 use stickslip_core::{Mode, Model};
-use stickslip_scene::number::shortest;
+use stickslip_scene::shortest;
 use stickslip_study::drawn::PlotError;
 use stickslip_study::sheet::{Anchor, BLACK, Colour, GREY, LABEL, MARGIN, SMALL, Sheet, widest};
 
@@ -24,12 +24,22 @@ fn rows(height: f64) -> usize {
 }
 
 /// Fill colour of a mode's marker.
-pub(super) fn colour(mode: Mode) -> Colour {
+fn colour(mode: Mode) -> Colour {
     match mode {
         Mode::Free => (255, 255, 255),
         Mode::Sliding => (230, 159, 0),
         Mode::Fixed => (0, 90, 140),
     }
+}
+
+/// The marker of a mode: a circle for free, a triangle for sliding, a square for fixed.
+pub(super) fn marker(sheet: &mut Sheet, at: (f64, f64), mode: Mode, r: f64) {
+    let kind = match mode {
+        Mode::Free => 0,
+        Mode::Sliding => 2,
+        Mode::Fixed => 1,
+    };
+    sheet.ringed(at, kind, r, colour(mode));
 }
 
 /// The most relevant slave nodes, in the order of the scene: those that change in the last minor iterations,

@@ -5,11 +5,11 @@ use super::frozen::{self, Origin};
 use crate::explain::names;
 use stickslip_core::Stepper;
 use stickslip_exchange::fclib;
-use stickslip_scene::Scene;
 use stickslip_scene::format::notation;
 use stickslip_scene::problems::market;
 use stickslip_scene::shown as outside;
 use stickslip_scene::siconos::{Friction2d, Storage};
+use stickslip_scene::{Scene, joined};
 
 /// The scene with all overrides, or its frozen problem if requested.
 pub(super) fn ron(shown: &ExportState, stepper: &mut Stepper) -> Result<Vec<u8>, ExportError> {
@@ -74,10 +74,10 @@ pub fn scene(scene: &Scene) -> Result<String, ExportError> {
     let unwritable =
         |why| ExportError::NoFile(format!("the scene cannot be written as text: {why}"));
     let text = notation::lines(&scene.spec, layout).map_err(|e| unwritable(e.to_string()))?;
-    let set: Vec<String> = scene.overrides().map(|(p, v)| format!("{p}={v}")).collect();
+    let set = joined(scene.overrides().map(|(p, v)| format!("{p}={v}")), ", ");
     let mut head = format!("// From {}", scene.name.replace('\n', " "));
     if !set.is_empty() {
-        head += &format!(", with {}", set.join(", ").replace('\n', " "));
+        head += &format!(", with {}", set.replace('\n', " "));
     }
     let text = format!("{head}.\n{text}\n");
     let read = Scene::from_text(&scene.name, &text, &[]).map_err(|e| unwritable(e.to_string()))?;

@@ -98,31 +98,15 @@ fn apart(a: f64, b: f64) -> Option<f64> {
 
 /// The slaves whose contact elements differ between two iterations, in ascending order.
 pub fn changed(one: &[ClosedContact], other: &[ClosedContact]) -> Vec<usize> {
-    let groups = |closed: &'_ [ClosedContact]| -> Vec<(u32, Range<usize>)> {
-        let mut start = 0;
-        let parts = closed.chunk_by(|a, b| a.slave == b.slave);
-        parts
-            .map(|part| {
-                let range = start..start + part.len();
-                start = range.end;
-                (part[0].slave, range)
-            })
-            .collect()
+    let missing = |from: &[ClosedContact], other: &[ClosedContact]| {
+        let lost = from
+            .iter()
+            .filter(|closed| other.binary_search(closed).is_err());
+        lost.map(|closed| closed.slave as usize).collect::<Vec<_>>()
     };
-    let (a, b) = (groups(one), groups(other));
-    let (mut i, mut j) = (0, 0);
-    let mut found = Vec::new();
-    while i < a.len() || j < b.len() {
-        let left = a.get(i).map_or(u32::MAX, |group| group.0);
-        let right = b.get(j).map_or(u32::MAX, |group| group.0);
-        let slave = left.min(right);
-        let both = left == right;
-        if !both || one[a[i].1.clone()] != other[b[j].1.clone()] {
-            found.push(slave as usize);
-        }
-        i += usize::from(left == slave);
-        j += usize::from(right == slave);
-    }
+    let mut found = [missing(one, other), missing(other, one)].concat();
+    found.sort_unstable();
+    found.dedup();
     found
 }
 

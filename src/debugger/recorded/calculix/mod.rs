@@ -91,7 +91,9 @@ pub fn open(run: CalculixRun, deck: Option<Deck>) -> Result<OpenedRun, String> {
     };
     let mut scene = Scene::from_message(&run.name, &scene, None).map_err(|why| why.to_string())?;
     scene.model.finished = Some(FinishedRun {
-        increments: increments(&run)
+        increments: run
+            .increments()
+            .into_iter()
             .map(|(step, k)| format!("{step}.{k}"))
             .collect(),
         cycles: run
@@ -152,18 +154,6 @@ fn explained(mut run: CalculixRun, deck: Option<Deck>) -> Result<CalculixRun, St
     Ok(run)
 }
 
-/// Step and increment numbers of all increments, in order.
-fn increments(run: &CalculixRun) -> impl Iterator<Item = (u32, u32)> {
-    let mut all: Vec<_> = run
-        .files
-        .attempts
-        .iter()
-        .map(|a| (a.step, a.increment))
-        .collect();
-    all.dedup();
-    all.into_iter()
-}
-
 /// A run as a solver that replays its iterations. A state is identified by the number of iterations before it.
 pub struct RecordedRun {
     run: Arc<CalculixRun>,
@@ -178,7 +168,7 @@ impl RecordedRun {
     /// The solver at the start of the run.
     pub fn new(opened: &OpenedRun) -> RecordedRun {
         let run = opened.run.clone();
-        let all: Vec<(u32, u32)> = increments(&run).collect();
+        let all = run.increments();
         let number = |a: &stickslip_exchange::calculix::files::Attempt| {
             all.partition_point(|increment| *increment <= (a.step, a.increment)) as u32
         };

@@ -120,6 +120,14 @@ impl CalculixRun {
         }
     }
 
+    /// Step and increment numbers of all increments, in order.
+    pub fn increments(&self) -> Vec<(u32, u32)> {
+        let attempts = self.files.attempts.iter();
+        let mut all: Vec<_> = attempts.map(|a| (a.step, a.increment)).collect();
+        all.dedup();
+        all
+    }
+
     /// The attempt of an iteration.
     pub fn attempt(&self, iteration: usize) -> usize {
         self.attempts[iteration]

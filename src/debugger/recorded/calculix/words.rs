@@ -2,12 +2,11 @@
 
 use super::run::{CORRECTION_LIMIT, CalculixRun, Status, face, residual_limit};
 use std::fmt::Write;
-use stickslip_core::words::counted;
+use stickslip_core::counted;
 use stickslip_exchange::calculix::Stop;
 use stickslip_exchange::calculix::cel::Slave;
 use stickslip_exchange::calculix::files::OptionalFile;
-use stickslip_scene::number::shortest;
-use stickslip_scene::shown::{aligned, first_of};
+use stickslip_scene::{aligned, first_of, shortest};
 
 /// Kind of the recording.
 pub const READ_ONLY: &str = "finished CalculiX run (read-only)";
@@ -25,13 +24,8 @@ const MOST_MEMBERS: usize = 4;
 /// Numbers of steps, increments, attempts, iterations and contacts.
 fn size(run: &CalculixRun) -> String {
     let files = &run.files;
-    let mut increments: Vec<_> = files
-        .attempts
-        .iter()
-        .map(|a| (a.step, a.increment))
-        .collect();
-    increments.dedup();
-    let mut steps: Vec<_> = increments.iter().map(|(step, _)| step).collect();
+    let increments = run.increments();
+    let mut steps: Vec<u32> = increments.iter().map(|(step, _)| *step).collect();
     steps.dedup();
     [
         (steps.len(), "step"),

@@ -15,6 +15,7 @@ mod types;
 mod words;
 
 use super::error::{Path, SetError, quoted};
+use crate::joined;
 use stickslip_core::model::documented::{DocAttributes, text};
 pub use types::{Field, Form, Type};
 pub(crate) use types::{OWN_DEFAULTS, blank_form, contains, link, read_blank};
@@ -332,8 +333,8 @@ impl<T: Described> Described for Vec<T> {
         "[]".to_owned()
     }
     fn shown(&self) -> String {
-        let all: Vec<String> = self.iter().map(T::shown).collect();
-        format!("[{}]", all.join(", "))
+        let all = joined(self.iter().map(T::shown), ", ");
+        format!("[{all}]")
     }
     fn types(into: &mut Vec<Type>) -> Result<(), String> {
         T::types(into)

@@ -6,11 +6,13 @@ use super::words::{of_word, word, words};
 use super::{Choice, Described, Scalar, ScalarPlace, Visit, field_of, one_of, types_of};
 use stickslip_core::model::documented::text;
 use stickslip_core::model::{
-    AtCycle, AtLimit, Axis, Component, Control, ElementKind, Geometry, InitialGaps, InitialState,
-    Jumps, Law, LinearSolver, Plane, PointForce, Refactor, ResidualMethod, SearchMode, SlavePoints,
-    SlipCount, Sticking, TieRule, Touch, Update,
+    AtCycle, AtLimit, Axis, Geometry, LinearSolver, PointForce, Refactor, ResidualMethod,
+    SlavePoints, SlipCount, Sticking, TieRule,
 };
-use stickslip_core::{BoundUpdate, Friction, Mode, Settings, Strategy};
+use stickslip_core::{
+    BoundUpdate, Component, Control, ElementKind, Friction, InitialGaps, InitialState, Jumps, Law,
+    Mode, Plane, SearchMode, Settings, Strategy, Touch, Update,
+};
 
 macro_rules! fields {
     ($name:ident { $($part:ident),* $(,)? }) => {

@@ -1,6 +1,7 @@
 //! Entries of the scene reference: the forms of a type, their fields, accepted values and defaults.
 
 use crate::format::notation::options;
+use crate::joined;
 use serde::de::DeserializeOwned;
 use stickslip_core::model::documented::{DocAttributes, Docs, text};
 
@@ -46,12 +47,14 @@ pub(crate) fn contains(types: &[Type], name: &str) -> bool {
 
 /// `head(field: …, …)` with the required fields.
 pub(crate) fn blank_form(head: &str, fields: &[(&str, bool, String)]) -> String {
-    let written: Vec<String> = fields
-        .iter()
-        .filter(|(_, optional, _)| !optional)
-        .map(|(name, _, blank)| format!("{name}: {blank}"))
-        .collect();
-    format!("{head}({})", written.join(", "))
+    let written = joined(
+        fields
+            .iter()
+            .filter(|(_, optional, _)| !optional)
+            .map(|(name, _, blank)| format!("{name}: {blank}")),
+        ", ",
+    );
+    format!("{head}({written})")
 }
 
 /// The value of the shortest text, with all optional fields at their defaults.

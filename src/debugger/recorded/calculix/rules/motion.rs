@@ -5,6 +5,7 @@ use super::shape::{DeckShape, PairShape, SlaveGap, Vector};
 use nalgebra::{Matrix3, SMatrix, SVector};
 use std::collections::{BTreeMap, BTreeSet};
 use stickslip_exchange::inp::deck::{Value, Volume};
+use stickslip_scene::joined;
 
 /// Translations along x, y, z, then rotations about them, scaled by the body's size.
 pub type Motion = SVector<f64, 6>;
@@ -215,10 +216,11 @@ pub fn words(free: &[Motion]) -> String {
     ];
     let names = spaces.map(|(word, space)| (word, names(space)));
     let names = names.iter().filter(|(_, names)| !names.is_empty());
-    let words: Vec<String> = names
-        .map(|(word, names)| format!("{word} {}", names.join(", ")))
-        .collect();
-    words.join(" and ")
+
+    joined(
+        names.map(|(word, names)| format!("{word} {}", names.join(", "))),
+        " and ",
+    )
 }
 
 /// Projection onto the eigenvectors with eigenvalues above a limit.

@@ -2,7 +2,7 @@
 
 use super::shape::Vector;
 use std::fmt::Display;
-use stickslip_scene::number::sig4;
+use stickslip_scene::sig4;
 
 /// Numbers of a vector, shortened.
 pub fn vector(of: Vector) -> String {

@@ -7,8 +7,7 @@ use super::supports::is_free;
 use std::collections::{BTreeMap, BTreeSet};
 use stickslip_core::RunFinding;
 use stickslip_exchange::inp::deck::{Faces, Value};
-use stickslip_scene::number::sig4;
-use stickslip_scene::shown::first_of;
+use stickslip_scene::{first_of, joined, sig4};
 
 /// A contact stiffness above this many Young's moduli, by itself and times the element size, is reported. CalculiX recommends 5 to
 /// 50 in its usual units; the size makes the rule independent of them.
@@ -353,11 +352,13 @@ pub fn constrained_slaves(shape: &DeckShape) -> Vec<RunFinding> {
         let mut against = supports.clone().filter(is_against);
         let held: BTreeSet<usize> = against.clone().map(|value| value.node).collect();
         if let Some(first) = against.next() {
-            let rest: Vec<String> = supports
-                .clone()
-                .filter(|value| value.place == first.place && !is_against(value))
-                .map(|value| support_line(shape, value))
-                .collect();
+            let rest = joined(
+                supports
+                    .clone()
+                    .filter(|value| value.place == first.place && !is_against(value))
+                    .map(|value| support_line(shape, value)),
+                "\n",
+            );
             found.push(RunFinding {
                 rule: "constrained slave nodes",
                 cause: format!(
@@ -374,7 +375,7 @@ pub fn constrained_slaves(shape: &DeckShape) -> Vec<RunFinding> {
                 lines: if rest.is_empty() {
                     "** supports no other node".into()
                 } else {
-                    rest.join("\n")
+                    rest
                 },
             });
         }
@@ -432,15 +433,16 @@ fn remaining(
     shape: &DeckShape,
     name: &str,
 ) -> String {
-    let rest: Vec<String> = own
-        .keys()
-        .filter(|node| !without.contains(node))
-        .map(|&node| format!("{},", shape.deck.nodes[node].label))
-        .collect();
+    let rest = joined(
+        own.keys()
+            .filter(|node| !without.contains(node))
+            .map(|&node| format!("{},", shape.deck.nodes[node].label)),
+        "\n",
+    );
     if rest.is_empty() {
         format!("** {name} is in no pair")
     } else {
-        format!("*SURFACE, NAME={name}, TYPE=NODE\n{}", rest.join("\n"))
+        format!("*SURFACE, NAME={name}, TYPE=NODE\n{rest}")
     }
 }
 

@@ -9,8 +9,7 @@ use std::collections::BTreeSet;
 use stickslip_core::RunFinding;
 use stickslip_exchange::calculix::cvg::Norms;
 use stickslip_exchange::calculix::files::End;
-use stickslip_scene::number::{shortest, sig4};
-use stickslip_scene::shown::first_of;
+use stickslip_scene::{first_of, shortest, sig4};
 
 /// Increments of a step without INC (CalculiX).
 const INCREMENTS: u64 = 100;

@@ -4,7 +4,7 @@ use super::motion::{GroupMotion, LOADED, Motion};
 use super::numbers::{boundary, displaced, plain, rounded, rounded_up, vector};
 use super::shape::{DeckShape, PairShape, SlaveGap, Vector};
 use stickslip_core::RunFinding;
-use stickslip_scene::number::sig4;
+use stickslip_scene::sig4;
 
 /// Cosine between normals of a contact that counts as flat.
 const FLAT: f64 = 0.99;

@@ -9,6 +9,8 @@ use stickslip_exchange::inp::Deck;
 use stickslip_exchange::inp::deck::{
     Adjust, Faces, Family, Interaction, Normal, Section, Set, Step, Value,
 };
+use stickslip_scene::groups::Connected;
+use stickslip_scene::joined;
 
 /// Position tolerance of a tie without one, in sizes of a master face (CalculiX: 2.5 %).
 const TIE_TOLERANCE: f64 = 0.025;
@@ -286,8 +288,8 @@ impl<'d> DeckShape<'d> {
     /// Name of a group: its bodies.
     pub fn group_name(&self, group: usize) -> String {
         let own = (0..self.bodies.len()).filter(|body| self.group_of[*body] == group);
-        let names: Vec<&str> = own.map(|body| self.bodies[body].as_str()).collect();
-        names.join(" with ")
+
+        joined(own.map(|body| &self.bodies[body]), " with ")
     }
 
     /// The pairs that touch a group.
@@ -615,25 +617,15 @@ fn sorted(corners: &[usize]) -> Vec<usize> {
 
 /// Connected elements: the body of each node, and the names of the bodies.
 fn bodies(deck: &Deck) -> (Vec<Option<usize>>, Vec<String>) {
-    let mut root: Vec<usize> = (0..deck.nodes.len()).collect();
-    fn find(root: &mut [usize], mut node: usize) -> usize {
-        while root[node] != node {
-            root[node] = root[root[node]];
-            node = root[node];
-        }
-        node
-    }
-    for element in &deck.elements {
-        for ends in element.nodes.windows(2) {
-            let (a, b) = (find(&mut root, ends[0]), find(&mut root, ends[1]));
-            root[a.max(b)] = a.min(b);
-        }
+    let mut groups = Connected::new(deck.nodes.len());
+    for ends in deck.elements.iter().flat_map(|e| e.nodes.windows(2)) {
+        groups.join(ends[0], ends[1]);
     }
     let mut body_of = vec![None; deck.nodes.len()];
     let (mut known, mut names) = (BTreeMap::new(), Vec::new());
     for (k, element) in deck.elements.iter().enumerate() {
         for &node in &element.nodes {
-            let at = find(&mut root, node);
+            let at = groups.root(node);
             body_of[node] = Some(*known.entry(at).or_insert_with(|| {
                 names.push(name(deck, k, &names));
                 names.len() - 1

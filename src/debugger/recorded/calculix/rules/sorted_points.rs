@@ -1,6 +1,7 @@
 //! Points sorted along an axis, and the extent of some numbers.
 
 use nalgebra::Vector3;
+use stickslip_core::plane::range;
 
 /// A position or direction.
 pub type Vector = Vector3<f64>;
@@ -61,7 +62,7 @@ impl SortedPoints {
 }
 
 /// The difference between the largest and the smallest of some numbers.
-pub fn extent(numbers: impl Iterator<Item = f64> + Clone) -> f64 {
-    let most = numbers.clone().fold(f64::NEG_INFINITY, f64::max);
-    most - numbers.fold(f64::INFINITY, f64::min)
+pub fn extent(numbers: impl Iterator<Item = f64>) -> f64 {
+    let [least, most] = range(numbers);
+    most - least
 }

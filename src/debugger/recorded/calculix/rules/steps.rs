@@ -6,7 +6,7 @@ use super::shape::{DeckShape, PairShape, Vector};
 use std::collections::{HashMap, HashSet};
 use stickslip_core::RunFinding;
 use stickslip_exchange::inp::deck::{Direction, Step};
-use stickslip_scene::number::sig4;
+use stickslip_scene::{joined, sig4};
 
 /// Motion of the first increment that is reported, in sizes of a slave face.
 const FIRST: f64 = 0.5;
@@ -100,14 +100,14 @@ pub fn no_cuts(shape: &DeckShape) -> Vec<RunFinding> {
         let time = step.time;
         let line = step.static_place.line;
         let times = [time.initial, time.period, rounded(time.initial / 1000.0)];
-        let times: Vec<String> = times.into_iter().chain(time.most).map(plain).collect();
+        let times = joined(times.into_iter().chain(time.most).map(plain), ", ");
         // Before a run, DIRECT is taken as intended.
         let (why, cure, lines) = match time.direct {
             true if shape.failed.is_none() => return None,
             true => (
                 format!("have the fixed size {} (DIRECT)", plain(time.initial)),
                 format!("*STATIC without DIRECT, and a minimum (before line {line})"),
-                format!("*STATIC\n{}", times.join(", ")),
+                format!("*STATIC\n{times}"),
             ),
             false => {
                 let least = time.least.filter(|least| *least > CUT * time.initial)?;
@@ -118,7 +118,7 @@ pub fn no_cuts(shape: &DeckShape) -> Vec<RunFinding> {
                         plain(least)
                     ),
                     format!("a smaller minimum (line {line})"),
-                    times.join(", "),
+                    times,
                 )
             }
         };
@@ -200,8 +200,8 @@ pub fn squeezed(shape: &DeckShape) -> Vec<RunFinding> {
             _ => &pair.groups,
         };
         let height: f64 = soft.iter().map(|group| shape.height(*group, normal)).sum();
-        let names: Vec<String> = soft.iter().map(|group| shape.group_name(*group)).collect();
-        let name = names.join(" and ");
+        let names = joined(soft.iter().map(|group| shape.group_name(*group)), " and ");
+        let name = names;
         let stays = (gap + SQUEEZABLE * height) / (gap + squeezed);
         (height > 0.0 && squeezed > SQUEEZED * height).then(|| RunFinding {
             rule: "squeezed flat",

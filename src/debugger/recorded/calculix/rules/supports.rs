@@ -7,7 +7,7 @@ use super::shape::{DeckShape, PairShape, SlaveGap, nearest};
 use nalgebra::Matrix3;
 use std::collections::BTreeSet;
 use stickslip_core::RunFinding;
-use stickslip_scene::number::sig4;
+use stickslip_scene::sig4;
 
 /// Part of a free motion along an axis above which a support along it stops the motion.
 const MOVES: f64 = 1e-3;

@@ -1,0 +1,33 @@
+//! Groups of connected nodes, and sets of nodes.
+
+/// Which of this many nodes are among some.
+pub(crate) fn marked<'a>(count: usize, nodes: impl IntoIterator<Item = &'a usize>) -> Vec<bool> {
+    let mut marked = vec![false; count];
+    nodes.into_iter().for_each(|&node| marked[node] = true);
+    marked
+}
+
+/// The groups, by the representative of each node: a node of its group with a smaller number, or itself.
+pub struct Connected(Vec<usize>);
+
+impl Connected {
+    /// Each node by itself.
+    pub fn new(nodes: usize) -> Self {
+        Connected((0..nodes).collect())
+    }
+
+    /// The representative of a node's group: its smallest node.
+    pub fn root(&mut self, mut node: usize) -> usize {
+        while self.0[node] != node {
+            self.0[node] = self.0[self.0[node]];
+            node = self.0[node];
+        }
+        node
+    }
+
+    /// Connects two nodes.
+    pub fn join(&mut self, a: usize, b: usize) {
+        let (a, b) = (self.root(a), self.root(b));
+        self.0[a.max(b)] = a.min(b);
+    }
+}
