@@ -113,7 +113,7 @@ records! {
         fallbacks: Vec<FallbackRecord>,
         /// Loads of increments that jumped to another branch of equilibrium
         jumps: Vec<f64>,
-        /// Increments that a damped motion led to; the friction law holds for each step of the motion, not from its start to its end
+        /// Increments that end a damped motion; the friction law holds for each step of the motion, not from its start to its end
         motions: Vec<MotionRecord>,
         /// Loads at which equilibrium became unstable
         unstable: Vec<f64>,
@@ -155,7 +155,7 @@ records! {
         load: f64,
     }
 
-    /// An increment that a damped motion led to (page `jumps`).
+    /// An increment that ends a damped motion (page `jumps`).
     MotionRecord "motion" {
         /// Increment, from 1
         increment: u32,

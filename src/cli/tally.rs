@@ -88,7 +88,7 @@ pub struct Tally<'a> {
     pub found: BTreeMap<Fallback, Vec<f64>>,
     /// Load factors of accepted increments that jumped, and of those that lost stability.
     pub jumps: Vec<f64>,
-    /// Accepted increments that damped motions led to.
+    /// Accepted increments that end a damped motion.
     pub motions: Vec<MotionRecord>,
     pub losses: Vec<f64>,
     /// Before the first of these: the body that has no friction left, and the load factor since when.
