@@ -77,7 +77,7 @@ const CASES: [Case; 14] = [
     Case {
         name: "ladder-ended",
         scene: "avoidable-848",
-        set: &[],
+        set: &[("settings.search", "off")],
         is_meant: |failure| matches!(failure, Failure::LadderEnded { .. }),
     },
     Case {
