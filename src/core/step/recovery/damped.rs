@@ -96,7 +96,7 @@ fn slower(slow: SmallerStepReason, stalled: &FailedIncrement<'_>) -> Option<Retr
         motion.coming_to_rest = false;
     } else if motion.drag < STIFFEST * motion.stiffness {
         motion.drag *= FASTER;
-        motion.slowed = true;
+        motion.slowed = stalled.state.recovery.fallback.is_some();
     } else {
         return None;
     }
@@ -227,7 +227,7 @@ impl Iterate {
         motion.travelled += moved;
         motion.dissipated += motion.drag * square_of_motion(self);
         // With less drag the next step would probably fail like this one, which costs a search the whole ladder.
-        let keeps = std::mem::take(&mut motion.slowed) && self.state.recovery.fallback.is_some();
+        let keeps = std::mem::take(&mut motion.slowed);
         if moved < SHORT * stride && !keeps {
             let room = SHORT * stride / moved.max(f64::MIN_POSITIVE);
             motion.drag /= room.clamp(1.0, FASTER);

@@ -21,7 +21,7 @@ pub struct Motion {
     pub coming_to_rest: bool,
     /// Drag at the last such attempt; infinite before the first.
     pub tried: f64,
-    /// Whether the current step was tried with less drag before.
+    /// Whether the current step of a search's motion was tried with less drag before.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub slowed: bool,
 }
