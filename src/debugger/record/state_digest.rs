@@ -1,4 +1,4 @@
-//! Digests of states, by which a replay tells whether it goes the recorded way. The start of a digest tells its version:
+//! Digests of states, with which a replay compares every state that it reaches. The first characters give the version:
 //!
 //! - none: FNV-1a of the state's RON text, in which floats are exact;
 //! - `2-`: [`bits::digest`] of the state;
