@@ -290,3 +290,21 @@ fn the_end_of_the_path_is_named_where_contacts_change_or_an_element_is_inverted(
         );
     }
 }
+
+/// Where a node that carries a force reaches the end of its surface, or has got behind it, the surface continued past its ends is tried.
+#[test]
+fn a_surface_whose_end_a_node_has_reached_is_tried_with_continued_ends() {
+    for (file, surface) in [
+        ("path-ends-behind-the-end-of-a-surface.ron", "f"),
+        ("slides-off-the-end-of-its-surface.ron", "fp"),
+    ] {
+        let file = format!("tests/findings/{file}");
+        let (code, reason, _) = told(&[&file]);
+        assert_eq!(code, 3, "{reason}");
+        let change = format!("surfaces.{surface}.past_ends=0.5");
+        let tried = format!("try: --set {change} (tried from the start: passes, ");
+        assert!(reason.contains(&tried), "{reason}");
+        let (code, reason, _) = told(&[&file, "--set", &change]);
+        assert_eq!(code, 0, "{reason}");
+    }
+}

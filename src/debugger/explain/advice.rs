@@ -5,6 +5,7 @@
 //! tried.
 
 use super::remedy::{Remedy, RemedyKind};
+use super::surface_end::ending;
 use stickslip_core::model::{AtCycle, Geometry, InitialGaps, Jumps, ResidualMethod, SearchMode};
 use stickslip_core::{BoundUpdate, Failure, Mode, Model, Singular, State, Strategy};
 use stickslip_scene::gaps::turned;
@@ -55,6 +56,10 @@ pub fn advice(model: &Model, state: &State, failure: &Failure) -> Vec<Advice> {
         .into_iter()
         .filter_map(|gaps| Remedy::from_kind(RemedyKind::Gaps(gaps), model, state))
         .map(Advice::Remedy);
+    let ends = ending(model, state)
+        .into_iter()
+        .filter_map(|surface| Remedy::from_kind(RemedyKind::PastEnds(surface), model, state))
+        .map(Advice::Remedy);
     let rest: Vec<Advice> = if scene_first {
         by_hand.chain(remedies).collect()
     } else {
@@ -66,7 +71,11 @@ pub fn advice(model: &Model, state: &State, failure: &Failure) -> Vec<Advice> {
         law => (None, law.map(|(law, _)| law)),
     };
     let (first, last) = (first.map(Advice::Remedy), last.map(Advice::Remedy));
-    gaps.chain(first).chain(rest).chain(last).collect()
+    gaps.chain(first)
+        .chain(ends)
+        .chain(rest)
+        .chain(last)
+        .collect()
 }
 
 /// Whether a finer mesh can help against a failure.

@@ -56,6 +56,8 @@ pub enum RemedyKind {
     Gaps(InitialGaps),
     /// The surface with this number the other way round; tried from the start of the scene.
     Reverse(usize),
+    /// The surface with this number continued past its ends; tried from the start of the scene.
+    PastEnds(usize),
     /// Search for a way out (`settings.search=auto`).
     Search,
     /// Another treatment of increments that jump to another branch; tried from the start of the scene.
@@ -189,6 +191,13 @@ impl Remedy {
                 let label = format!("reverse surface {name}");
                 let how = restarted(&format!("surfaces.{name}.reverse"), "true");
                 Some(remedy(&label, how, Vec::new()))
+            }
+            RemedyKind::PastEnds(surface) => {
+                let surface = model.surfaces.get(surface)?;
+                let name = &surface.name;
+                let label = format!("continue surface {name} past its ends");
+                let how = restarted(&format!("surfaces.{name}.past_ends"), "0.5");
+                (surface.past_ends == [0.0; 2]).then(|| remedy(&label, how, Vec::new()))
             }
             RemedyKind::Gaps(gaps) => {
                 // Only the first increment starts with the overlap.
@@ -381,6 +390,7 @@ fn change(
         | RemedyKind::Hysteresis
         | RemedyKind::Gaps(_)
         | RemedyKind::Reverse(_)
+        | RemedyKind::PastEnds(_)
         | RemedyKind::Jumps(_)
         | RemedyKind::Law => return None,
     };

@@ -14,15 +14,15 @@ use stickslip_core::{
 };
 use stickslip_scene::{sig4, sig6};
 
-/// Maximum distance past the end in the last equilibrium, and minimum depth behind it, relative to the scene's length.
+/// Maximum distance from the end in the last equilibrium, and minimum depth behind it, relative to the scene's length.
 const NEAR: f64 = 0.02;
 const DEEP: f64 = 1e-4;
 /// Maximum number of nodes tried, and of minor iterations of each trial.
 const MOST_NODES: usize = 4;
 const MOST_MINORS: u64 = 400;
 
-/// A node past the end of a surface, and behind it.
-struct PassedEnd {
+/// A node near the end of a surface.
+struct NearEnd {
     slave: usize,
     surface: usize,
     /// Position of the end.
@@ -30,16 +30,34 @@ struct PassedEnd {
     /// Distance past the end along the surface, and behind it (length).
     past: f64,
     depth: f64,
+    /// Whether the node is free, past the end and behind it.
+    is_behind: bool,
+}
+
+/// The surfaces at whose end a slave node touches, or behind whose end it is, in the last equilibrium.
+pub fn ending(model: &Model, state: &State) -> Vec<usize> {
+    let touches = |found: &NearEnd| {
+        let node = &state.start.nodes[found.slave];
+        let spot = node.spot.filter(|_| node.mode != Mode::Free);
+        spot.is_some_and(|spot| spot.surface == found.surface)
+    };
+    let mut found = near_ends(model, state);
+    found.retain(|found| found.is_behind || touches(found));
+    let mut surfaces: Vec<usize> = found.iter().map(|found| found.surface).collect();
+    surfaces.sort_unstable();
+    surfaces.dedup();
+    surfaces
 }
 
 /// Describes the node whose way around the end of its surface ends the path. `None` if there is none, or if interrupted. The
 /// stepper's final state is unspecified.
 pub fn passed_end(stepper: &mut Stepper, state: &State, stop: &dyn Fn() -> bool) -> Option<String> {
     let model = stepper.model().clone();
-    let mut all = behind(&model, state);
+    let mut all = near_ends(&model, state);
+    all.retain(|found| found.is_behind);
     all.sort_by(|a, b| a.past.total_cmp(&b.past));
     let near = all.into_iter().take(MOST_NODES);
-    let PassedEnd {
+    let NearEnd {
         slave,
         surface,
         at: [x, y],
@@ -56,26 +74,25 @@ pub fn passed_end(stepper: &mut Stepper, state: &State, stop: &dyn Fn() -> bool)
     ))
 }
 
-/// The free nodes past an end and behind it in the last equilibrium.
-fn behind(model: &Model, state: &State) -> Vec<PassedEnd> {
+/// The nodes near an end of a surface that they can touch, in the last equilibrium.
+fn near_ends(model: &Model, state: &State) -> Vec<NearEnd> {
     let places = model.places(&state.start.u);
     let mut found = Vec::new();
     for (slave, (contact, node)) in model.contacts.iter().zip(&state.start.nodes).enumerate() {
-        if node.mode != Mode::Free || node.spot.is_some() {
-            continue;
-        }
         for &surface in &contact.surfaces {
             for end in ends(model, surface, &places).into_iter().flatten() {
                 let to = minus(places[contact.node], places[end.node]);
                 // The outward normal is on the right of the walk.
                 let (past, depth) = (end.sign * dot(end.walk, to), cross(end.walk, to));
-                if (0.0..NEAR * model.length).contains(&past) && depth > DEEP * model.length {
-                    found.push(PassedEnd {
+                let is_free = node.mode == Mode::Free && node.spot.is_none();
+                if past.abs() < NEAR * model.length {
+                    found.push(NearEnd {
                         slave,
                         surface,
                         at: places[end.node],
                         past,
                         depth,
+                        is_behind: is_free && past >= 0.0 && depth > DEEP * model.length,
                     });
                 }
             }
@@ -106,12 +123,7 @@ fn ends(model: &Model, surface: usize, places: &[[f64; 2]]) -> Option<[SurfaceEn
 }
 
 /// Whether forces balance during the increment, with the node held free, while the node is behind the surface.
-fn enters(
-    stepper: &mut Stepper,
-    state: &State,
-    found: &PassedEnd,
-    stop: &dyn Fn() -> bool,
-) -> bool {
+fn enters(stepper: &mut Stepper, state: &State, found: &NearEnd, stop: &dyn Fn() -> bool) -> bool {
     let (slave, mode) = (found.slave, Mode::Free);
     let settings = Settings {
         search: SearchMode::Off,
