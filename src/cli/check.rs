@@ -6,12 +6,12 @@ use super::records::{CheckRecord, DeckRecord};
 use std::path::Path;
 use stickslip_debugger::recorded::calculix::rules::{self, shape::DeckShape};
 use stickslip_exchange::inp::Deck;
-use stickslip_scene::Scene;
 use stickslip_scene::calculix;
 use stickslip_scene::cost::Cost;
 use stickslip_scene::format::paths;
 use stickslip_scene::gaps;
 use stickslip_scene::precision;
+use stickslip_scene::{Scene, SceneError};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -28,14 +28,21 @@ pub struct Args {
 }
 
 pub fn main(args: &Args) -> Result<Exit, Error> {
-    let deck = outlined(&args.scene.scene);
-    let scene = match (args.scene.open(), &deck) {
+    let outlined = outlined(&args.scene.scene);
+    let deck = outlined
+        .as_ref()
+        .and_then(|outlined| outlined.as_ref().ok());
+    let scene = match (args.scene.open(), deck) {
         (Err(_), Some(deck)) if deck.is_solid() => return check_solid(args, deck),
         (Ok(scene), _) => scene,
-        (Err(why), deck) => {
-            warn(&deck.iter().flat_map(causes).collect::<Vec<_>>());
+        (Err(why), Some(deck)) => {
+            // The rules would warn of what a card that cannot be read leaves out.
+            if !deck.has_faults {
+                warn(&causes(deck));
+            }
             return Err(why.into());
         }
+        (Err(why), None) => return Err(outlined.and_then(located).unwrap_or(why).into()),
     };
     if args.paths {
         say(&all_paths(&scene))?;
@@ -53,16 +60,21 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     }
     let mut warnings = gaps::warnings(&scene.model);
     warnings.extend(precision::warning(&scene.model));
-    warnings.extend(deck.iter().flat_map(causes));
+    warnings.extend(deck.into_iter().flat_map(causes));
     warn(&warnings);
     json::write(json, &record(&scene, cost, notes, warnings))?;
     Ok(Exit::Good)
 }
 
 /// The outline of a deck; `None` for other files.
-fn outlined(name: &str) -> Option<Deck> {
+fn outlined(name: &str) -> Option<Result<Deck, SceneError>> {
     let is_deck = Path::new(name).extension()?.eq_ignore_ascii_case("inp");
-    is_deck.then(|| calculix::outline(name).ok()).flatten()
+    is_deck.then(|| calculix::outline(name))
+}
+
+/// The error of an outline, if it has a place in the deck.
+fn located(outlined: Result<Deck, SceneError>) -> Option<SceneError> {
+    outlined.err().filter(|why| why.at.is_some())
 }
 
 fn warn(warnings: &[String]) {

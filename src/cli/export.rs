@@ -25,7 +25,7 @@ use stickslip_exchange::vtu;
 use stickslip_platform::files::{self, Output};
 use stickslip_scene::calculix;
 use stickslip_scene::solver::solver;
-use stickslip_scene::{FileKind, Scene};
+use stickslip_scene::{FileKind, Scene, SceneError};
 use stickslip_scene::{import, shown};
 use stickslip_study::pen;
 
@@ -283,7 +283,13 @@ fn around_mesh(args: &Args, kind: &ExportKind) -> Result<Vec<u8>, Error> {
     };
     let scene = args.output.to_string_lossy();
     let parts = import::bodies(file)?;
-    Ok(skeleton(&scene, &below.to_string_lossy(), &parts)?.into_bytes())
+    // The error is one of the mesh: the scene has not been written.
+    let written = skeleton(&scene, &below.to_string_lossy(), &parts).map_err(|why| SceneError {
+        file: file.to_owned(),
+        at: None,
+        ..why
+    })?;
+    Ok(written.into_bytes())
 }
 
 /// The mesh of a CalculiX run with the switches of its contacts.

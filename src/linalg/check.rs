@@ -9,6 +9,10 @@ pub enum SolveError {
     OutOfMemory,
 }
 
+/// Size from which a solution can be checked relative to its vectors; smaller ones have lost digits to underflow. A body without
+/// loads gets there if every solve divides its displacements by the accuracy.
+pub(super) const UNDERFLOW: f64 = f64::MIN_POSITIVE / f64::EPSILON;
+
 /// Fills in a fixed vector that contains all frequencies, with magnitudes between 1 and 2.
 pub(super) fn fill_probe(probe: &mut [f64]) {
     for (i, p) in probe.iter_mut().enumerate() {

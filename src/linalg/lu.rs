@@ -10,7 +10,7 @@
 //! Cheap checks come first: a solution is refined only if its residual is above round-off, and the norm of the inverse is
 //! estimated by a solve only if a pivot is small. Both decisions depend only on the matrix and the right-hand side.
 
-use super::check::{SolveError, are_equal, fill_probe, largest};
+use super::check::{SolveError, UNDERFLOW, are_equal, fill_probe, largest};
 use super::fronts::Fronts;
 use super::pattern::{Pattern, symbolic_view};
 use faer::dyn_stack::{MemBuffer, MemStack};
@@ -277,7 +277,7 @@ impl Factors {
         for (x, scale) in x.iter().zip(&self.col_scale) {
             size = size.max((x / scale).abs());
         }
-        if error == 0.0 { 0.0 } else { error / size }
+        error / size.max(UNDERFLOW)
     }
 
     fn apply_inverse(&mut self, x: &mut [f64]) {
@@ -460,6 +460,18 @@ mod tests {
         let mut factors = Factors::new(pattern.clone()).unwrap();
         factors.scale(&values, 2, &ONES[..pattern.size()]);
         solves(&mut factors, &values, [1.0, -2.0, 3e5], 1e-12);
+    }
+
+    #[test]
+    fn a_solution_that_underflows_is_a_solution() {
+        let (pattern, values) = dense(3, &[12.3, 3.7, 1.1, 3.7, 0.1, 1.3, 1.1, 1.3, 0.7]);
+        let mut factors = Factors::new(pattern.clone()).unwrap();
+        factors.scale(&values, 2, &ONES[..pattern.size()]);
+        factors.factor(&values).unwrap();
+        for size in (0..20).map(|k| 1e-300 / 10f64.powi(k)) {
+            let b = [1.0, -2.3, 4.7].map(|b| size * b);
+            assert!(factors.solve(&b, &mut [0.0; 3]).is_ok(), "{size:e}");
+        }
     }
 
     /// Factors a matrix, which must give back `exact` within a relative tolerance.

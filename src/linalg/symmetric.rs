@@ -21,7 +21,7 @@
 //! the terms of the factorization are then no larger than the matrix. With negative pivots the size of the terms is
 //! checked ([`SymmetricFactors::factor`]); if it is too large, the caller uses [`super::Factors`].
 
-use super::check::{SolveError, largest};
+use super::check::{SolveError, UNDERFLOW, largest};
 use super::executor::Executor;
 use super::order::order;
 use super::pattern::{Pattern, symbolic_view};
@@ -301,7 +301,7 @@ impl SymmetricFactors {
             // `max` would ignore NaN.
             worst = if apart <= worst { worst } else { apart };
         }
-        let size = largest(b).max(self.size * largest(x));
+        let size = largest(b).max(self.size * largest(x)).max(UNDERFLOW);
         if size.is_finite() && worst <= BACKWARD_LIMIT * size {
             Ok(())
         } else {
@@ -433,6 +433,19 @@ mod tests {
                 .recover(b.as_slice(), known.as_slice(), &mut x)
                 .unwrap();
             assert!((&a * DVector::from_vec(x) - &b).amax() < 1e-11);
+        }
+    }
+
+    #[test]
+    fn a_solution_that_underflows_is_a_solution() {
+        let (pattern, a) = grid(9, 0.0);
+        let mut factors = SymmetricFactors::new(pattern.clone(), &[], &[]).unwrap();
+        factors
+            .factor(&values(&pattern, &a), 0.0, &SequentialExecutor)
+            .unwrap();
+        for size in [1e-300, 3e-319] {
+            let b: Vec<f64> = (0..81).map(|i| size * f64::from(i).sin()).collect();
+            assert!(factors.solve(&b, &mut [0.0; 81]).is_ok(), "{size:e}");
         }
     }
 

@@ -139,6 +139,14 @@ impl<'a> Start<'a> {
         }
     }
 
+    /// Whether a file with the name of a deck begins neither like one nor like another kind.
+    fn is_damaged_deck(&self, name: &str) -> bool {
+        let kind = FileKind::from_text(self.text);
+        deck::is_called_so(name)
+            && !self.text.trim_start().starts_with(['(', '/'])
+            && (kind.is_none() || siconos::is_one(self.text))
+    }
+
     /// Whether this is the first word of the RON value.
     fn begins_with(&self, word: &str) -> bool {
         head(self.text) == Some(word) && too_deep(self.text).is_none()
@@ -302,6 +310,9 @@ impl Scene {
             overrides,
         };
         let start = Start::new(text);
+        if start.is_damaged_deck(name) {
+            return source.deck();
+        }
         let read = READERS
             .iter()
             .find_map(|reader| reader.read.filter(|_| (reader.recognise)(&start)));

@@ -32,7 +32,8 @@ use std::fmt::Write;
 use std::num::NonZeroUsize;
 use std::path::Path;
 use std::sync::Arc;
-use stickslip_scene::format::error::did_you_mean;
+use stickslip_scene::format::error::{at, did_you_mean};
+use stickslip_scene::format::locate::{line_and_column, locate};
 use stickslip_scene::format::read::{text as file_text, value as from_ron};
 use stickslip_scene::{EmbeddedFile, Scene, SceneError, increments};
 use stickslip_scene::{embedded, joined};
@@ -173,8 +174,12 @@ impl Benchmarks {
         let mut list: Benchmarks = from_ron(name, text, "list of benchmarks")?;
         list.name = name.to_owned();
         for (k, benchmark) in list.list.iter().enumerate() {
-            benchmark.check().map_err(|message| SceneError {
-                path: format!("benchmarks[{k}]"),
+            benchmark.check().map_err(|(field, message)| SceneError {
+                at: Some(line_and_column(
+                    text,
+                    locate(text, &at!["benchmarks", k, field]).start,
+                )),
+                path: format!("benchmarks[{k}].{field}"),
                 ..SceneError::whole(name, message)
             })?;
         }
@@ -250,16 +255,27 @@ impl Benchmark {
         self.scale.unwrap_or(self.value).abs()
     }
 
-    fn check(&self) -> Result<(), String> {
-        let numbers = [self.value, self.within, self.drift, self.unit()];
-        if numbers.iter().any(|x| !x.is_finite()) || self.own.is_some_and(|own| !own.is_finite()) {
-            return Err("all numbers must be finite".into());
-        }
-        if self.within <= 0.0 || self.drift <= 0.0 {
-            return Err("within and drift must be above 0".into());
+    /// The field that has an error, and the error.
+    fn check(&self) -> Result<(), (&'static str, String)> {
+        let named = [
+            ("value", Some(self.value)),
+            ("within", Some(self.within)),
+            ("drift", Some(self.drift)),
+            ("scale", self.scale),
+            ("own", self.own),
+            ("at", self.at),
+        ];
+        for (field, number) in named {
+            let Some(number) = number else { continue };
+            if !number.is_finite() {
+                return Err((field, format!("{field} is {number:?}; it must be finite")));
+            }
+            if matches!(field, "within" | "drift") && number <= 0.0 {
+                return Err((field, format!("{field} is {number:?}; it must be above 0")));
+            }
         }
         if self.unit() == 0.0 {
-            return Err("the value is 0, so its error needs a scale".into());
+            return Err(("value", "the value is 0, so its error needs a scale".into()));
         }
         Ok(())
     }

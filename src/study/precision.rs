@@ -332,7 +332,8 @@ fn compare(
     precision.monitors = reference.monitors.iter().filter(counts).cloned().collect();
     if precision.monitors.is_empty() {
         return Err(PrecisionError::Reference(format!(
-            "the reference has none of the scene's monitors ({names})"
+            "{} has none of the scene's monitors ({names})",
+            reference.source
         )));
     }
     let curve = |m: &MeasuredRun| Reference::from_run(&m.run, String::new(), &m.path);
@@ -343,9 +344,10 @@ fn compare(
     let fixed = |row: &&ReferencePoint| planned.counts(&first.path, row.leg, row.load);
     let rows: Vec<_> = reference.rows.iter().filter(fixed).collect();
     if rows.is_empty() {
-        return Err(PrecisionError::Reference(
-            "the reference has none of the fixed loads at which errors are measured".to_owned(),
-        ));
+        return Err(PrecisionError::Reference(format!(
+            "{} has none of the fixed loads at which errors are measured",
+            reference.source
+        )));
     }
     let largest = |k: usize| {
         let values = reference.rows.iter().map(|row| row.values[k].abs());

@@ -59,6 +59,15 @@ fn what_a_list_asks_for_and_no_scene_has_is_refused() {
         told.contains("a.ron: scene bench-pad has no monitor \"allong\"; did you mean \"along\"?"),
         "{told}"
     );
+    fs::write(directory.path().join("a.ron"), list("inf", "along")).unwrap();
+    let wrong = ran(directory.path(), &["a.ron"]);
+    assert_eq!(code(&wrong), 2);
+    assert!(
+        err(&wrong)
+            .starts_with("a.ron:1:108: benchmarks[0].value: value is inf; it must be finite"),
+        "{}",
+        err(&wrong)
+    );
     for more in [
         &["--vary", "friction.angle=1,2"][..],
         &["--set", "refine=2"],

@@ -54,6 +54,51 @@ fn each_fault_has_one_message_with_its_place() {
             ":29:49: nodes[1].to: (-2.0) is not valid; it must be two numbers",
         ),
         (
+            "to: (-2.0, 0.0)",
+            "to: (-2.0, 0.0, 1.0)",
+            ":29:61: nodes[1].to: expected a closing bracket, ); there are too many values",
+        ),
+        (
+            "per_element: 5",
+            "per_element: 5.0",
+            ":26:26: nodes[0].per_element: 5.0 is not valid; it must be a whole number",
+        ),
+        (
+            "per_element: 5",
+            "per_element: 1e1",
+            ":26:26: nodes[0].per_element: 1e1 is not valid; it must be a whole number",
+        ),
+        (
+            "angle: 30.0",
+            "angle: 30deg",
+            ":38:23: friction.angle: 30deg is not valid; it must be a number",
+        ),
+        (
+            "component: rotation",
+            "component: \"rotation\"",
+            ":45:74: monitors[2].of.component: \"rotation\" is not valid; it must be a name without quotes",
+        ),
+        (
+            "fix: [x, y]",
+            "fix: [x, 2]",
+            ":39:46: supports[0].fix[1]: 2 is not valid; it must be a name without quotes",
+        ),
+        (
+            "(angle: 30.0)",
+            "(\"angle\": 30.0)",
+            ":38:16: friction: expected the name of a field, without quotes",
+        ),
+        (
+            "(angle: 30.0)",
+            "(angle 30.0)",
+            ":38:21: friction: expected a colon after the name of the field",
+        ),
+        (
+            "start: sliding)]",
+            "start: sliding)",
+            ":38:5: slaves[1]: found \"friction\" where a value in round brackets, ( ), or a closing bracket was expected",
+        ),
+        (
             "angle: 30.0",
             "angle: 30,0",
             "decimals are written with a point, not a comma",
@@ -217,7 +262,7 @@ fn each_fault_has_one_message_with_its_place() {
         (
             "[0.0, 0.25, 0.0]",
             "[0.0]",
-            ":41:21: history.path: the path has 1 corners",
+            ":41:21: history.path: the path has 1 corner;",
         ),
         (
             "0.25, 0.0]",
@@ -257,6 +302,11 @@ fn each_fault_has_one_message_with_its_place() {
         ),
         ("\"u_x\"", "\"a,b\"", "it must not contain commas"),
         ("\"u_x\"", "\"a\\nb\"", "it must not contain commas"),
+        (
+            "\"u_x\"",
+            "\"a\\u{7}\"",
+            "line breaks or control characters",
+        ),
         (
             "Displacement(node: \"beam.end\", component: x",
             "Reaction(node: \"beam.end\", component: x",

@@ -119,7 +119,9 @@ fn settings_from_outside_reach_the_model_and_are_named_in_messages() {
         friction=3 | it has friction.angle, friction.cohesion
         settings.t_max=foo | it must be one of lagged, consistent
         settings.foo=1 | settings has settings.strategy
-        refine=-1 | it must be a whole number
+        refine=-1 | \"-1\" is not valid; it must be a whole number that is neither negative nor huge
+        settings.majors=4294967296 | it must be a whole number that is neither negative nor huge
+        refine=1.5 | it must be a whole number
         refine=0 | --set refine=0: refine is 0
         nodes.beam.elments=2 | did you mean nodes.beam.elements?
         history.increment=nan | it must be a number

@@ -236,6 +236,11 @@ fn what_is_wrong_with_an_interface_problem_is_said_with_its_place() {
             "13:40: history.increment: ",
         ),
         ("title: \"t\"", "title: \"\"", "2:12: title: "),
+        (
+            "path: [0, 1]",
+            "path: [0]",
+            "13:21: history.path: the path has 1 corner; ",
+        ),
     ] {
         let told = place(from, to);
         assert!(told.starts_with(&format!("c.ron:{at}")), "{to}: {told}");
@@ -374,4 +379,123 @@ fn a_message_repeats_only_the_beginning_of_what_is_long() {
             err(&output).len()
         );
     }
+}
+
+#[test]
+fn a_file_that_ends_where_a_value_is_expected_is_said_to_end_too_early() {
+    let directory = tempfile::tempdir().unwrap();
+    for end in ["slaves: ", "friction: (", "surfaces: [\n", "about: \"b"] {
+        put(&directory, "c.ron", &format!("(title: \"a\", {end}"));
+        let told = refusal(&directory, &["check", "c.ron"]);
+        assert!(
+            told.contains("the file ends too early; a bracket or a quote is not closed"),
+            "{end}: {told}"
+        );
+    }
+}
+
+/// A coefficient of friction that rounds to an angle of 90 degrees.
+#[test]
+fn a_coefficient_of_friction_that_is_too_large_is_named_as_it_is_written() {
+    let directory = tempfile::tempdir().unwrap();
+    let array = "%%MatrixMarket matrix array real general\n";
+    put(&directory, "a_W.mtx", &format!("{array}2 2\n1\n0\n0\n1\n"));
+    put(&directory, "a_q.mtx", &format!("{array}2 1\n-1\n0.5\n"));
+    put(&directory, "a_mu.mtx", &format!("{array}1 1\n1e16\n"));
+    let told = refusal(&directory, &["check", "a_W.mtx"]);
+    assert!(
+        told.starts_with(
+            "a_mu.mtx: the friction coefficient is 1e16; it must be at least 0 and below 1e15"
+        ),
+        "{told}"
+    );
+}
+
+#[test]
+fn a_snapshot_whose_scene_is_invalid_is_refused_with_the_place_in_its_file() {
+    let directory = tempfile::tempdir().unwrap();
+    let sound = include_str!("../../snapshots/osc-tip-forced-to-sliding.ron");
+    let damaged = sound.replacen("along: \"beam\"", "along: \"beem\"", 1);
+    let line = 1 + damaged
+        .lines()
+        .position(|line| line.contains("beem"))
+        .unwrap();
+    put(&directory, "s.ron", &damaged);
+    for command in [
+        "replay s.ron",
+        "audit s.ron",
+        "diff s.ron s.ron",
+        "export s.ron -o s.svg",
+    ] {
+        let words: Vec<&str> = command.split(' ').collect();
+        let told = err(&run(&directory, &words));
+        assert!(
+            told.contains(&format!("s.ron:{line}:"))
+                && told.contains("no chain of nodes called \"beem\""),
+            "{command}: {told}"
+        );
+    }
+}
+
+#[test]
+fn a_mesh_that_no_scene_can_have_is_refused_under_its_own_name() {
+    let directory = tempfile::tempdir().unwrap();
+    let sound = include_str!("../meshes/text22.msh");
+    let (before, nodes) = sound.split_once("$Nodes\n").unwrap();
+    let (count, nodes) = nodes.split_once('\n').unwrap();
+    let (first, rest) = nodes.split_once('\n').unwrap();
+    let label = first.split(' ').next().unwrap();
+    let far = format!("{before}$Nodes\n{count}\n{label} 1e300 0 0\n{rest}");
+    put(&directory, "m.msh", &far);
+    let told = refusal(&directory, &["export", "m.msh", "-o", "o.ron"]);
+    assert!(told.starts_with("m.msh: nodes[0]"), "{told}");
+    assert!(!directory.path().join("o.ron").exists());
+}
+
+#[test]
+fn a_deck_gets_one_message_where_its_text_is_damaged() {
+    let directory = tempfile::tempdir().unwrap();
+    let check = |deck: &str, from: &str, to: &str| {
+        assert!(deck.contains(from), "{from}");
+        put(&directory, "d.inp", &deck.replacen(from, to, 1));
+        refusal(&directory, &["check", "d.inp"])
+    };
+    // Three-dimensional: without its nodes and elements nothing can be checked.
+    let solid = include_str!("../calculix/causes/stick.inp");
+    let node = solid.lines().nth(1).unwrap();
+    let coordinate = node.rsplit(',').next().unwrap().trim();
+    let told = check(solid, node, &node.replace(coordinate, "NaN"));
+    assert!(
+        told.starts_with("d.inp:2:")
+            && told.contains("found \"NaN\" where a coordinate, a number, was expected"),
+        "{told}"
+    );
+    // Plane: the rules do not warn of what is missing because it cannot be read.
+    let plane = include_str!("../decks/beam-on-a-post.inp");
+    let told = check(plane, "ELSET=POST", "ELSET=PIST");
+    assert!(told.starts_with("d.inp:"), "{told}");
+    // The first keyword is damaged.
+    let told = check(plane, "*HEADING", "HEADING");
+    assert!(
+        told.starts_with("d.inp:1:1: data before the first keyword"),
+        "{told}"
+    );
+}
+
+#[test]
+fn bodies_without_any_stiffness_fail_and_are_not_tried_endlessly() {
+    let directory = tempfile::tempdir().unwrap();
+    let deck = include_str!("../decks/glued.inp").replace(
+        "*SOLID SECTION, ELSET=BLOCKS, MATERIAL=STUFF\n",
+        "*SOLID SECTION, ELSET=BLOCKS, MATERIAL=STUFF\n1e-300\n",
+    );
+    put(&directory, "d.inp", &deck);
+    fs::create_dir(directory.path().join("parts")).unwrap();
+    put(
+        &directory,
+        "parts/glued-mesh.inp",
+        include_str!("../decks/parts/glued-mesh.inp"),
+    );
+    let output = run(&directory, &["run", "d.inp", "-q"]);
+    assert_eq!(code(&output), 3, "{}", err(&output));
 }

@@ -17,6 +17,7 @@ use stickslip_core::{
 use stickslip_platform::disk;
 use stickslip_platform::files::{self, FileError};
 use stickslip_platform::input::{self, RECORD_BYTES};
+use stickslip_scene::format::error::at;
 use stickslip_scene::format::{notation, read};
 use stickslip_scene::readers::or_mistaken;
 use stickslip_scene::solver::any_solver;
@@ -235,10 +236,12 @@ impl Snapshot {
                     ),
                 ));
             }
-            notation::read(text).map_err(|e| {
+            let snapshot: Snapshot = notation::read(text).map_err(|e| {
                 let error = read::refused(file, 1, "", &e);
                 or_mistaken(error, file, text, FileKind::Snapshot)
-            })
+            })?;
+            Scene::within(file, text, &at!["scene"], snapshot.scene.clone())?;
+            Ok(snapshot)
         };
         read().map_err(|error| SnapshotError::Read(Box::new(error)))
     }

@@ -45,6 +45,8 @@ pub struct Deck {
     pub remarks: Vec<Remark>,
     /// Whether cards that may support, load or couple nodes were skipped; only in outlines.
     pub is_incomplete: bool,
+    /// Whether cards were skipped because they have errors; only in outlines.
+    pub has_faults: bool,
 }
 
 /// A node.

@@ -57,7 +57,7 @@ pub fn read(name: &str, text: &str, include: &mut Include<'_>) -> Result<Deck, D
 /// Outlines a deck for the rules that explain why it fails: reads three-dimensional elements too, and skips what it cannot read.
 ///
 /// # Errors
-/// If the text is not a list of keywords, or an include file is missing.
+/// If the text is not a list of keywords, its nodes or elements have errors, or an include file is missing.
 pub fn outline(name: &str, text: &str, include: &mut Include<'_>) -> Result<Deck, DeckError> {
     deck(name, text, include, true)
 }
@@ -101,8 +101,14 @@ fn whole(sources: &Sources, is_outline: bool) -> Done<Deck> {
             };
             reader.names.within.clone_from(&instances[instance]);
             if is_outline {
-                let read = (reading.read)(&mut reader, card);
-                read.unwrap_or_else(|fault| reader.skip(card, &fault.message));
+                match (reading.read)(&mut reader, card) {
+                    Ok(()) => {}
+                    Err(fault) if is_mesh(card) => return Err(fault),
+                    Err(fault) => {
+                        reader.deck.has_faults = true;
+                        reader.skip(card, &fault.message);
+                    }
+                }
                 continue;
             }
             card.only(reading.parameters)?;
@@ -129,6 +135,15 @@ fn whole(sources: &Sources, is_outline: bool) -> Done<Deck> {
     deck.remarks
         .sort_by_key(|remark| (remark.place.file, remark.place.line));
     Ok(deck)
+}
+
+/// Whether a card has nodes, or elements of a known type, to which the other cards refer.
+fn is_mesh(card: &Card<'_>) -> bool {
+    match card.key.as_str() {
+        "NODE" => true,
+        "ELEMENT" => mesh::element_type(card, true).is_ok(),
+        _ => false,
+    }
 }
 
 impl Reader {

@@ -14,8 +14,8 @@ pub(super) fn history(history: &History) -> Result<(), Fault> {
     if path.len() < 2 {
         bail!(
             here,
-            "the path has {} corners; it needs at least two, e.g. [0, 1]",
-            path.len()
+            "the path has {}; it needs at least two, e.g. [0, 1]",
+            counted(path.len(), "corner")
         );
     }
     for (k, corner) in path.iter().enumerate() {

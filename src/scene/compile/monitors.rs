@@ -68,7 +68,7 @@ fn monitor_name(name: &str) -> Result<(), String> {
         || name.trim() != name
     {
         Err(format!(
-            "the name {shown} is the header of a CSV column; it must not contain commas, quotes or line breaks, or start or end with a space"
+            "the name {shown} is the header of a CSV column; it must not contain commas, quotes, line breaks or control characters, or start or end with a space"
         ))
     } else if RESERVED.contains(&name) {
         Err(format!(

@@ -1,7 +1,7 @@
 //! Reads the text of a file into a [`Spec`]; errors of syntax and type have a location.
 
 use super::condensed::Problem;
-use super::error::{Path, SceneError, did_you_mean, quoted, shortened};
+use super::error::{Path, SceneError, Step, did_you_mean, quoted, shortened};
 use super::locate::{byte_at, line_and_column, locate, path_at, too_deep};
 use super::notation;
 use super::spec::Spec;
@@ -46,21 +46,21 @@ fn unreadable(file: &str, text: &str, what: &str, error: &SpannedError) -> Scene
     let path = path_of(text, error);
     let value = locate(text, &path);
     let of_value = line_and_column(text, value.start);
+    let cursor = (error.span.start.line, error.span.start.col);
     // If a whole value is wrong, report its start. Otherwise report ron's cursor: the start of its span is closer to the error
     // than the end.
-    let (at, message) = match (expected(&error.code), &error.code) {
+    let (at, message) = match (expected(text, error), &error.code) {
+        (Some(_), _) if is_at_end(text, error) => (cursor, message(&ron::Error::Eof, what)),
         (Some(wanted), _) if !path.0.is_empty() => {
             let shown = shortened(text.get(value).unwrap_or_default());
-            (
-                of_value,
-                format!("{shown} is not valid; it must be {wanted}"),
-            )
+            let message = match shown.as_str() {
+                "" => format!("{wanted} is missing"),
+                _ => format!("{shown} is not valid; it must be {wanted}"),
+            };
+            (of_value, message)
         }
         (_, code @ ron::Error::MissingStructField { .. }) => (of_value, message(code, what)),
-        (_, code) => (
-            (error.span.start.line, error.span.start.col),
-            message(code, what),
-        ),
+        (_, code) => (cursor, message(code, what)),
     };
     SceneError {
         file: file.to_owned(),
@@ -82,6 +82,7 @@ fn path_of(text: &str, error: &SpannedError) -> Path {
     let byte = byte_at(text, place.line, place.col);
     let mut path = path_at(text, byte);
     match &error.code {
+        _ if half_read(text, byte).is_some() => {}
         // An error after a value concerns the enclosing value.
         E::ExpectedComma | E::ExpectedArrayEnd | E::ExpectedMapEnd | E::ExpectedStructLikeEnd => {
             path.0.pop();
@@ -95,20 +96,63 @@ fn path_of(text: &str, error: &SpannedError) -> Path {
     path
 }
 
+/// Whether the file ends where a value was expected.
+fn is_at_end(text: &str, error: &SpannedError) -> bool {
+    let start = error.span.start;
+    let rest = text.get(byte_at(text, start.line, start.col)..);
+    start.col + start.line > 2 && rest.is_some_and(|rest| rest.trim().is_empty())
+}
+
+/// What the word is whose beginning ron has read as a number up to here: a decimal, `3.0`, is no whole number, and `3mm` is none
+/// at all.
+fn half_read(text: &str, byte: usize) -> Option<&'static str> {
+    let (before, after) = text.split_at_checked(byte)?;
+    let is_number = before.ends_with(|c: char| c.is_ascii_digit());
+    match after.chars().next().filter(|_| is_number)? {
+        '.' => Some("a whole number"),
+        letter if letter.is_alphanumeric() => Some("a number"),
+        _ => None,
+    }
+}
+
+/// Whether a value begins here, and not the name of a field: after a colon, or in a list.
+fn is_value(text: &str, byte: usize) -> bool {
+    let mut path = path_at(text, byte);
+    let in_list = matches!(path.0.pop(), Some(Step::Index(_))) && {
+        let list = locate(text, &path);
+        text.get(list).is_some_and(|list| list.starts_with('['))
+    };
+    in_list
+        || text
+            .get(..byte)
+            .unwrap_or_default()
+            .trim_end()
+            .ends_with(':')
+}
+
 /// What was expected instead of the value.
-fn expected(error: &ron::Error) -> Option<&'static str> {
+fn expected(text: &str, error: &SpannedError) -> Option<&'static str> {
     use ron::Error as E;
-    match error {
+    let start = error.span.start;
+    let byte = byte_at(text, start.line, start.col);
+    match &error.code {
         E::ExpectedFloat => Some("a number"),
-        E::ExpectedInteger => Some("a whole number"),
+        E::ExpectedInteger | E::InvalidIntegerDigit { .. } => Some("a whole number"),
         E::IntegerOutOfBounds => Some("a whole number that is neither negative nor huge"),
         E::ExpectedBoolean => Some("true or false"),
         E::ExpectedString => Some("a text in quotes"),
         E::ExpectedArray => Some("a list in square brackets, [ ]"),
+        E::ExpectedDifferentLength { expected, .. } if expected.ends_with('3') => {
+            Some("three values, (a, b, c)")
+        }
         E::ExpectedDifferentLength { .. } => Some("two numbers, (x, y)"),
         E::ExpectedStructLike | E::ExpectedNamedStructLike(_) => {
             Some("a value in round brackets, ( )")
         }
+        E::ExpectedIdentifier | E::SuggestRawIdentifier(_) | E::InvalidIdentifier(_) => {
+            is_value(text, byte).then_some("a name without quotes")
+        }
+        E::ExpectedComma | E::ExpectedArrayEnd | E::ExpectedStructLikeEnd => half_read(text, byte),
         _ => None,
     }
 }
@@ -191,6 +235,15 @@ fn message(error: &ron::Error, what: &str) -> String {
                 "a {what} is a list of fields in round brackets, (title: \"...\", {second}: [...], ...)"
             )
         }
+        E::ExpectedDifferentStructName { found, .. } => format!(
+            "found {} where a value in round brackets, ( ), or a closing bracket was expected",
+            quoted(found)
+        ),
+        E::ExpectedStructLikeEnd => {
+            "expected a closing bracket, ); there are too many values, or it is missing".to_owned()
+        }
+        E::ExpectedIdentifier => "expected the name of a field, without quotes".to_owned(),
+        E::ExpectedMapColon => "expected a colon after the name of the field".to_owned(),
         E::SuggestRawIdentifier(found) | E::InvalidIdentifier(found)
             if found.starts_with(|c: char| c.is_ascii_digit()) =>
         {
@@ -199,9 +252,14 @@ fn message(error: &ron::Error, what: &str) -> String {
                 quoted(found)
             )
         }
+        E::SuggestRawIdentifier(found) | E::InvalidIdentifier(found) => {
+            format!("{} is not a field name", quoted(found))
+        }
         E::ExceededRecursionLimit => format!("brackets are nested too deeply for a {what}"),
         E::ExpectedComma => "expected comma or closing bracket".to_owned(),
-        E::Eof => "the file ends too early; a bracket or a quote is not closed".to_owned(),
+        E::Eof | E::ExpectedStringEnd => {
+            "the file ends too early; a bracket or a quote is not closed".to_owned()
+        }
         E::TrailingCharacters => {
             format!("unexpected text after the closing bracket of the {what}")
         }

@@ -13,7 +13,7 @@
 //! The components are those of [`super::siconos`]. The user names the matrix file; the others are next to it. For a stiffness, q
 //! may be missing if f is given.
 
-use super::siconos::{contacts, settings};
+use super::siconos::{coefficient, contacts, settings};
 use super::{compliance, entries_fit, fits};
 use crate::SceneError;
 use crate::format::condensed::{Matrix, Problem};
@@ -92,10 +92,9 @@ pub fn read(file: &str, text: &str, memory: Option<f64>) -> Result<Problem, Scen
         ))
     };
     let mu = mu.ok_or_else(|| missing("mu"))?;
-    if let Some(wrong) = mu.iter().find(|mu| **mu < 0.0) {
-        let file = names.part("mu").display().to_string();
-        let why = format!("the friction coefficient is {wrong:?}; it must not be negative");
-        return Err(SceneError::whole(&file, why));
+    for mu in &mu {
+        let file = || names.part("mu").display().to_string();
+        coefficient(*mu).map_err(|why| SceneError::whole(&file(), why))?;
     }
     let tangents = size / mu.len() - 1;
     let f = column(&names, "f", &[size])?;

@@ -123,7 +123,17 @@ fn sound(local: &Local) -> Result<(), String> {
     for (k, &value) in local.q.iter().enumerate() {
         of(&|| format!("component {} of q", k + 1), value)?;
     }
-    Ok(())
+    local.mu.iter().try_for_each(|mu| coefficient(*mu))
+}
+
+/// Rejects coefficients of friction whose angle is not below 90 degrees.
+pub(super) fn coefficient(mu: f64) -> Result<(), String> {
+    if (0.0..1e15).contains(&mu) {
+        return Ok(());
+    }
+    Err(format!(
+        "the friction coefficient is {mu:?}; it must be at least 0 and below 1e15"
+    ))
 }
 
 /// A condensed problem in the format of the scene.

@@ -51,7 +51,8 @@ impl SlipStiffness {
     /// Increases κ; false if a larger κ no longer helps.
     pub(super) fn tighten(&mut self) -> bool {
         self.stiffness = GROWS * self.stiffness.max(LEAST * self.spring);
-        self.stiffness <= MOST * self.spring
+        // Without any stiffness, where it underflows, no κ holds anything back.
+        self.stiffness < MOST * self.spring
     }
 
     /// Decreases κ.

@@ -171,9 +171,22 @@ impl Scalar<'_> {
 
     pub(crate) fn set(self, text: &str) -> Result<(), SetError> {
         let mut own = self;
-        own.take(text).ok_or_else(|| SetError::NoValue {
-            value: quoted(text),
-            kind: own.kind(),
+        own.take(text).ok_or_else(|| {
+            let is_whole = !text.is_empty()
+                && text
+                    .trim_start_matches('-')
+                    .bytes()
+                    .all(|b| b.is_ascii_digit());
+            let kind = match own {
+                Scalar::Count(_) | Scalar::Limit(_) if is_whole => {
+                    "a whole number that is neither negative nor huge".to_owned()
+                }
+                _ => own.kind(),
+            };
+            SetError::NoValue {
+                value: quoted(text),
+                kind,
+            }
         })
     }
 
