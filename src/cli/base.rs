@@ -125,6 +125,14 @@ fn assignment(text: &str) -> Result<(String, String), NoValue> {
     }
 }
 
+/// Parses a tolerance. A comparison with NaN would find no difference.
+pub fn tolerance(text: &str) -> Result<f64, NoValue> {
+    text.parse::<f64>()
+        .ok()
+        .filter(|part| *part >= 0.0 && part.is_finite())
+        .ok_or_else(|| NoValue::new("expected a number that is at least 0, such as 1e-9"))
+}
+
 /// Quotes a word for a shell.
 pub fn quoted(word: &str) -> String {
     if !word.is_empty()

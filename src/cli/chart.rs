@@ -60,7 +60,7 @@ pub struct Args {
     #[arg(long, value_name = "FILE|finest|richardson")]
     reference: Option<String>,
     /// Repeats every run this many times, and takes the median of the times
-    #[arg(long, value_name = "N", default_value_t = 3)]
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = repeats)]
     repeats: usize,
     #[command(flatten)]
     sweep: SweepArgs,
@@ -71,6 +71,12 @@ fn target(text: &str) -> Result<f64, NoValue> {
         .ok()
         .filter(|t| *t > 0.0 && t.is_finite())
         .ok_or_else(|| NoValue::new("expected a positive number, such as 1e-3"))
+}
+
+fn repeats(text: &str) -> Result<usize, NoValue> {
+    const MOST: usize = 1000;
+    let count = text.parse().ok().filter(|n| (1..=MOST).contains(n));
+    count.ok_or_else(|| NoValue::new(format!("expected a whole number from 1 to {MOST}")))
 }
 
 fn cost(text: &str) -> Result<Cost, NoValue> {

@@ -1,6 +1,6 @@
 //! `stickslip map`: where the iterations converge.
 
-use super::base::{Error, Exit, NoValue, SetArgs, put, usage};
+use super::base::{Error, Exit, NoValue, SetArgs, put, tolerance, usage};
 use super::interrupt::Interrupt;
 use super::sweep::{Report, SweepArgs};
 use std::ops::RangeInclusive;
@@ -55,7 +55,7 @@ pub struct Args {
     #[command(flatten)]
     set: SetArgs,
     /// A final state that differs from the reference by more than this fraction of the largest value is on a wrong branch
-    #[arg(long, value_name = "PART", default_value_t = map::TOLERANCE)]
+    #[arg(long, value_name = "PART", default_value_t = map::TOLERANCE, value_parser = tolerance)]
     tolerance: f64,
     #[command(flatten)]
     sweep: SweepArgs,

@@ -1,6 +1,6 @@
 //! Output of sweeps: tables, pictures, progress, and tables for people.
 
-use super::base::{Error, distinct};
+use super::base::{Error, NoValue, distinct};
 use super::sink::Sink;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{self, IsTerminal};
@@ -24,7 +24,7 @@ pub struct OutputArgs {
     #[arg(long, value_name = "FILE")]
     png: Option<PathBuf>,
     /// Number of parallel runs [default: one per core]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = jobs)]
     jobs: Option<NonZeroUsize>,
     /// Overwrites existing files
     #[arg(long)]
@@ -65,6 +65,11 @@ impl OutputArgs {
             Err(_) => bar,
         }
     }
+}
+
+fn jobs(text: &str) -> Result<NonZeroUsize, NoValue> {
+    let count = text.parse().ok();
+    count.ok_or_else(|| NoValue::new("expected a whole number from 1"))
 }
 
 /// Output files, opened before the sweep runs, so that its results can be written.

@@ -1,6 +1,6 @@
 //! `stickslip replay`: recomputes snapshots, and compares.
 
-use super::base::{Error, Exit, distinct, notify, say, scene_instead};
+use super::base::{Error, Exit, distinct, notify, say, scene_instead, tolerance};
 use super::json::{self, JsonArgs};
 use super::junit::{self, TestCase, TestResult};
 use super::records::{DifferenceRecord, ReplayRecord, ReplayedRecord};
@@ -22,7 +22,7 @@ pub struct Args {
     #[arg(required = true, value_name = "SNAPSHOT")]
     files: Vec<PathBuf>,
     /// Numbers may differ by this part of their scale; all else must be equal
-    #[arg(long, value_name = "PART", default_value_t = TOLERANCE)]
+    #[arg(long, value_name = "PART", default_value_t = TOLERANCE, value_parser = tolerance)]
     tolerance: f64,
     #[command(flatten)]
     solver: SolverArgs,

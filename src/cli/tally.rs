@@ -18,6 +18,7 @@ use stickslip_debugger::explain::report;
 use stickslip_debugger::explain::touch::TouchWatch;
 use stickslip_debugger::history::rounds::{self, CycleWatch};
 use stickslip_debugger::record::table;
+use stickslip_scene::number::UNREPORTED;
 use stickslip_scene::{Scene, aligned, joined, shortest, sig6};
 
 /// Warnings that are printed individually; others are only counted.
@@ -256,7 +257,11 @@ impl<'a> Tally<'a> {
                 String::new(),
                 names::slave(&self.scene.model, slave).to_owned(),
                 names::mode(found.decision.before).to_owned(),
-                sig6(found.gap),
+                // Off all surfaces there is no gap.
+                match found.gap.is_finite() {
+                    true => sig6(found.gap),
+                    false => UNREPORTED.to_owned(),
+                },
                 sig6(found.f_n),
                 sig6(found.f_t),
             ]);

@@ -217,7 +217,16 @@ fn temporary_file(target: &Path) -> io::Result<NamedTempFile> {
     if let Some(usual) = system::usual_permissions() {
         builder.permissions(usual);
     }
-    let made = builder.tempfile_in(directory)?;
+    let made = builder.tempfile_in(directory).map_err(|why| {
+        // The system's error would name the temporary file.
+        let folder = directory.display();
+        let what = match why.kind() {
+            io::ErrorKind::NotFound => format!("there is no folder {folder}"),
+            io::ErrorKind::PermissionDenied => format!("the folder {folder} is not writable"),
+            _ => return why,
+        };
+        io::Error::new(why.kind(), what)
+    })?;
     // On file systems without locks, only the process number marks the file as in use.
     let _ = made.as_file().try_lock();
     Ok(made)

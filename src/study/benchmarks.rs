@@ -424,12 +424,17 @@ mod tests {
 
     #[test]
     fn inconsistent_benchmarks_are_refused() {
-        for wrong in ["value: 0.0, within: 0.1", "value: 1.0, within: 0.0"] {
+        for (wrong, field) in [
+            ("value: 0.0, within: 0.1", "value"),
+            ("value: 1.0, within: 0.0", "within"),
+        ] {
             let text = format!(
                 "(title: \"t\", benchmarks: [(scene: \"a\", what: \"w\", of: \"m\", source: \"s\", {wrong})])"
             );
             let error = Benchmarks::from_text("t", &text).unwrap_err().to_string();
-            assert!(error.starts_with("t: benchmarks[0]: "), "{error}");
+            let at = text.find(wrong).unwrap() + wrong.find(field).unwrap() + field.len() + 3;
+            let place = format!("t:1:{at}: benchmarks[0].{field}: ");
+            assert!(error.starts_with(&place), "{error}");
         }
     }
 }

@@ -250,3 +250,54 @@ fn a_body_that_is_loose_until_first_contact_is_named_once() {
     let line = "note: loose until first contact: PLATES-2, increment 1";
     assert_eq!(told.lines().filter(|l| *l == line).count(), 1, "{told}");
 }
+
+#[test]
+fn numbers_on_the_command_line_without_a_meaning_are_refused() {
+    let snapshot = "snapshots/osc-tip-forced-to-sliding.ron";
+    for (line, told) in [
+        (
+            "map osc-two6 --tolerance nan",
+            "expected a number that is at least 0",
+        ),
+        (
+            "map osc-two6 --tolerance=-1",
+            "expected a number that is at least 0",
+        ),
+        (
+            &format!("replay {snapshot} --tolerance nan"),
+            "expected a number that is at least 0",
+        ),
+        (
+            &format!("replay {snapshot} --tolerance inf"),
+            "expected a number that is at least 0",
+        ),
+        (
+            "chart osc-two6 --repeats 0",
+            "expected a whole number from 1 to 1000",
+        ),
+        (
+            "chart osc-two6 --repeats 1000000000",
+            "expected a whole number from 1 to 1000",
+        ),
+        ("map osc-two6 --jobs 0", "expected a whole number from 1"),
+    ] {
+        let refused = ran(Path::new("."), &words(line));
+        assert_eq!(code(&refused), 2, "{line}: {}", err(&refused));
+        assert!(err(&refused).contains(told), "{line}: {}", err(&refused));
+    }
+    well(&ran(
+        Path::new("."),
+        &["replay", snapshot, "--tolerance", "0.1"],
+    ));
+}
+
+/// A node that has left all surfaces has no gap.
+#[test]
+fn a_node_off_all_surfaces_has_a_dash_for_a_gap() {
+    let scene = "tests/findings/7-slid-onto-border-303-243.ron";
+    let told = ran(Path::new("."), &["run", scene, "--csv", "-"]);
+    let row = err(&told);
+    let row = row.lines().find(|line| line.contains("l.40")).expect(&row);
+    let cells: Vec<&str> = row.split_whitespace().collect();
+    assert_eq!(cells[..3], ["l.40", "free", "-"], "{row}");
+}

@@ -499,3 +499,18 @@ fn bodies_without_any_stiffness_fail_and_are_not_tried_endlessly() {
     let output = run(&directory, &["run", "d.inp", "-q"]);
     assert_eq!(code(&output), 3, "{}", err(&output));
 }
+
+#[test]
+fn an_empty_file_is_no_snapshot_and_no_type_of_the_program_is_named() {
+    let directory = tempfile::tempdir().unwrap();
+    for text in ["", "hello", "[]"] {
+        put(&directory, "e.ron", text);
+        let told = err(&run(&directory, &["replay", "e.ron"]));
+        assert!(told.contains("e.ron:1:1: "), "{text}: {told}");
+        assert!(
+            told.contains("a value in round brackets, ( )"),
+            "{text}: {told}"
+        );
+        assert!(!told.contains("Snapshot"), "{text}: {told}");
+    }
+}

@@ -106,3 +106,19 @@ fn a_disk_without_room_is_told_and_leaves_nothing_half_written() {
         );
     }
 }
+
+#[test]
+fn a_folder_that_does_not_exist_is_named_and_not_a_temporary_file_in_it() {
+    let directory = tempfile::tempdir().unwrap();
+    for arguments in [
+        ["run", CYCLES, "--csv", "none/a.csv"],
+        ["run", CYCLES, "--trace", "none/a.csv"],
+        ["show", CYCLES, "-o", "none/a.csv"],
+    ] {
+        let told = refusal(&directory, &arguments);
+        assert_eq!(
+            told,
+            "none/a.csv: the file cannot be written: there is no folder none\n"
+        );
+    }
+}

@@ -235,10 +235,6 @@ fn message(error: &ron::Error, what: &str) -> String {
                 "a {what} is a list of fields in round brackets, (title: \"...\", {second}: [...], ...)"
             )
         }
-        E::ExpectedDifferentStructName { found, .. } => format!(
-            "found {} where a value in round brackets, ( ), or a closing bracket was expected",
-            quoted(found)
-        ),
         E::ExpectedStructLikeEnd => {
             "expected a closing bracket, ); there are too many values, or it is missing".to_owned()
         }
@@ -269,7 +265,20 @@ fn message(error: &ron::Error, what: &str) -> String {
 
 /// ron's own message, shortened to a readable length.
 pub fn plainly(error: &ron::Error) -> String {
+    use ron::Error as E;
     const MOST: usize = 300;
+    match error {
+        E::ExpectedStructLike | E::ExpectedNamedStructLike(_) => {
+            return "a value in round brackets, ( ), was expected".to_owned();
+        }
+        E::ExpectedDifferentStructName { found, .. } => {
+            return format!(
+                "found {} where a value in round brackets, ( ), or a closing bracket was expected",
+                quoted(found)
+            );
+        }
+        _ => {}
+    }
     let text = shown::cut(&error.to_string(), MOST);
     let mut letters = text.chars();
     letters
