@@ -208,8 +208,6 @@ fn temporary_file(target: &Path) -> io::Result<NamedTempFile> {
     if target.file_name().is_none() {
         return Err(io::Error::other("not a file name"));
     }
-    // If the folder is missing, the error must not name the temporary file.
-    std::fs::metadata(directory)?;
     let _making = MAKING.lock().unwrap_or_else(PoisonError::into_inner);
     sweep(directory);
     // Temporary files are private by default; results get the usual permissions.

@@ -128,16 +128,6 @@ mod tests {
     }
 
     #[test]
-    fn an_error_does_not_show_the_temporary_file() {
-        let directory = tempfile::tempdir().unwrap();
-        let path = directory.path().join("none").join("a.csv");
-        let error = write(&path, "whole", false).unwrap_err().to_string();
-        let system = std::fs::metadata(&path).unwrap_err();
-        let wanted = format!("{}: the file cannot be written: {system}", path.display());
-        assert_eq!(error, wanted);
-    }
-
-    #[test]
     fn several_files_appear_all_or_none_and_what_was_there_is_there_again() {
         let directory = tempfile::tempdir().unwrap();
         let at = |name: &str| directory.path().join(name);
