@@ -538,6 +538,13 @@ impl App {
                     ..Camera::ALL
                 }
             }
+            Ui::View
+                if view.is_some_and(|view| {
+                    view.model.space.is_none() && view.model.finished.is_none()
+                }) =>
+            {
+                self.complain("this scene is plane: it has one view");
+            }
             Ui::View => self.camera.projection = self.camera.projection.next(),
             Ui::Magnify(None) => self.camera = self.camera.magnified_next(),
             Ui::Magnify(factor) => self.camera.magnify = factor,

@@ -92,7 +92,7 @@ impl ChartPage {
     }
 
     /// Whether any run of the shown chart has an error of the contact forces.
-    fn has_forces(&self) -> bool {
+    pub(super) fn has_forces(&self) -> bool {
         self.shown()
             .points
             .iter()

@@ -287,6 +287,8 @@ fn a_solver_of_our_own_has_no_log_and_no_parameters() {
         debugger.type_keys(keys);
         holds(&debugger, "only attached solvers");
     }
+    debugger.type_keys("V");
+    holds(&debugger, "this scene is plane");
     debugger.type_keys("m");
     holds(&debugger, "(capital letter: hold)");
 }

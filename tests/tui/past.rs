@@ -218,6 +218,25 @@ fn the_shape_shows_the_surfaces_of_the_deck_from_the_chosen_side() {
 }
 
 #[test]
+fn a_finished_run_has_no_forces_no_remedies_and_no_second_branch() {
+    let mut debugger = debugger("two-blocks");
+    for (keys, shows) in [
+        ("E", "CalculiX's files contain no forces at the contacts."),
+        ("Esc v", "time 1.015625  69 iterations"),
+    ] {
+        debugger.type_keys(keys);
+        let shown = debugger.text(80, 24);
+        assert!(shown.contains(shows), "{shown}");
+        assert!(!shown.contains("starts a new branch"), "{shown}");
+    }
+    while debugger.app.panes.focus != Pane::Remedies {
+        debugger.type_keys("Tab");
+    }
+    let shown = debugger.text(80, 24);
+    assert!(shown.contains("are in its diagnosis (d)"), "{shown}");
+}
+
+#[test]
 fn any_size_shows_something_and_none_panics() {
     let pages: Vec<String> = (0..9).map(|tabs| "Tab ".repeat(tabs) + "z").collect();
     for name in ["pinned-beam", "two-blocks"] {

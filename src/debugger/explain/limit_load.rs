@@ -17,6 +17,7 @@
 
 use super::load_limit_probe::{LoadLimitProbe, reach};
 use super::moves_away::moves_away;
+use super::remedies::BUDGET;
 use super::restart::restart;
 use super::rigid_motion::BodyMotion;
 use super::surface_end::passed_end;
@@ -224,10 +225,17 @@ pub fn limit_load(
         return of_cut_increment(stepper, state, failure, stop).map(LoadEnd::Limit);
     }
     match with_ladder(stepper, state, stop)? {
-        Ok(minors) => Some(LoadEnd::Strategy(format!(
-            "the failure is that of the strategy: a state exists at this load, and the ladder reaches it (settings.strategy=ladder, tried: {})",
-            counted(minors, "minor")
-        ))),
+        Ok(minors) => {
+            // Otherwise the trial of the ladder would contradict this.
+            let beyond = match minors > u64::from(BUDGET) {
+                true => format!("; a remedy's trial stops after {BUDGET}"),
+                false => String::new(),
+            };
+            Some(LoadEnd::Strategy(format!(
+                "the failure is that of the strategy: a state exists at this load, and the ladder reaches it (settings.strategy=ladder, tried: {}{beyond})",
+                counted(minors, "minor")
+            )))
+        }
         Err((state, failure)) => {
             of_cut_increment(stepper, &state, &failure, stop).map(LoadEnd::Limit)
         }

@@ -458,10 +458,12 @@ pub fn intervention(model: &Model, intervention: &Intervention) -> String {
         }
         Intervention::Friction(f) => format!(
             "friction angle {} degrees, cohesion {}",
-            f.angle, f.cohesion
+            sig6(f.angle),
+            sig6(f.cohesion)
         ),
         Intervention::Frictions(all) => {
             let angle = all.first().map_or(0.0, |first| first.angle);
+            let angle = sig6(angle);
             format!("friction angle {angle} degrees, cohesion by area")
         }
         Intervention::Settings(_) => "settings changed".into(),

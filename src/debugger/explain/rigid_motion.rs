@@ -190,7 +190,7 @@ impl<'a> BodyMotion<'a> {
             _ => "the sticking nodes do not prevent this motion",
         };
         format!(
-            "of the body's {} contacts, {free} are open, {sliding} slide, {fixed} stick; {why}",
+            "of the body's {} contacts, {free} open, {sliding} sliding, {fixed} sticking; {why}",
             own.len()
         )
     }

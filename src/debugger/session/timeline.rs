@@ -4,6 +4,7 @@ use super::background_messages::Reported;
 use super::refusal::Refusal;
 use super::worker::Steps;
 use crate::explain::failures;
+use crate::explain::headline::headline;
 use crate::explain::influence::PushPath;
 use crate::explain::report;
 use crate::explain::reported_pushes::Iterations;
@@ -156,7 +157,12 @@ impl Timeline {
         }
         self.switch(to);
         let verdict = verdicts::describe(&self.tree, &verdicts::verdict(&self.tree, to));
-        Ok(format!("{} ({verdict}): {}", self.name(), self.outcome()))
+        let frame = self.frame();
+        let end = match frame.event.as_deref().map(|event| &event.outcome) {
+            Some(Outcome::Failed(failure)) => headline(self.model(), &frame.state, failure),
+            _ => self.outcome(),
+        };
+        Ok(format!("{} ({verdict}): {end}", self.name()))
     }
 
     /// The name of the current branch.
@@ -192,12 +198,16 @@ impl Timeline {
     /// Compares the current branch with another one, by default with its parent.
     pub(super) fn compare_with(&self, other: Option<&str>) -> Result<String, Refusal> {
         let current = self.tree.current();
-        let other = match other {
-            Some(name) => branches::find(&self.tree, name)?,
-            None => self.tree.branches()[current]
-                .parent
-                .ok_or(Refusal::WhichBranch)?,
-        };
+        let other =
+            match other {
+                Some(name) => branches::find(&self.tree, name)?,
+                None => self.tree.branches()[current].parent.ok_or(
+                    match self.tree.branches().len() {
+                        1 => Refusal::OneBranch,
+                        _ => Refusal::WhichBranch,
+                    },
+                )?,
+            };
         if other == current {
             return Err(Refusal::SameBranch);
         }

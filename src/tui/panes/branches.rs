@@ -66,11 +66,13 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         .enumerate()
         .skip(top)
         .take(rows)
-        .map(|(row, &(number, depth))| line(tree, &all[number], depth, row == at, width, app))
+        .map(|(row, &(number, depth))| {
+            line(tree, &all[number], depth, row == at, width, (app, view))
+        })
         .collect();
-    if all.len() == 1 {
-        let text = " An intervention in an earlier state starts a new branch; nothing is lost.";
-        lines.push(Line::styled(text, theme.faint));
+    if all.len() == 1 && view.model.finished.is_none() {
+        let text = "An intervention in an earlier state starts a new branch; nothing is lost.";
+        lines.extend(paint::wrapped(text, width, theme.faint));
     }
     lines.extend(compared);
     paint::lines(buffer, inner, &lines);
@@ -102,7 +104,7 @@ fn line<'a>(
     depth: usize,
     selected: bool,
     width: usize,
-    app: &App,
+    (app, view): (&App, &View),
 ) -> Line<'a> {
     let theme = &app.theme;
     let twig = match depth {
@@ -112,12 +114,12 @@ fn line<'a>(
     let current = if branch.is_current { "●" } else { " " };
     let (glyph, style) = glyph(&branch.verdict, app);
     let verdict = verdicts::describe(tree, &branch.verdict);
-    let cost = format!(
-        "  load {}  {} minor, {} major",
-        number::shortest(branch.load_factor),
-        branch.whole.minors,
-        branch.whole.majors
-    );
+    let load = number::shortest(branch.load_factor);
+    let (minors, majors) = (branch.whole.minors, branch.whole.majors);
+    let cost = match view.model.finished {
+        None => format!("  load {load}  {minors} minor, {majors} major"),
+        Some(_) => format!("  time {load}  {minors} iterations"),
+    };
     let room = width.saturating_sub(cost.width() + 4);
     let name = paint::cut(&format!("{twig}{}", branch.name), room * 3 / 5);
     let pad = (room * 3 / 5).saturating_sub(name.width());
@@ -164,8 +166,10 @@ fn comparison(
         return Vec::new();
     }
     if selected == current {
-        let text = " Select another branch to compare it with this one; Enter goes to it.";
-        return vec![Line::default(), Line::styled(text, theme.faint)];
+        let text = "Select another branch to compare it with this one; Enter goes to it.";
+        let mut lines = vec![Line::default()];
+        lines.extend(paint::wrapped(text, width, theme.faint));
+        return lines;
     }
     let Some(found) = compare::compare(tree, selected, current) else {
         return Vec::new();

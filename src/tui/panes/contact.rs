@@ -60,7 +60,11 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         app,
     );
     let hidden = app.learning.hides(view, slave);
-    let Some(record) = view.record(slave).filter(|_| view.model.finished.is_none()) else {
+    if view.model.finished.is_some() {
+        let text = "CalculiX's files contain no forces at the contacts.";
+        return paint::note(buffer, inner, text, theme);
+    }
+    let Some(record) = view.record(slave) else {
         return paint::note(buffer, inner, "No iteration yet.", theme);
     };
     let mut lines = words(record, slave, inner.width.into(), app, view);
@@ -385,8 +389,10 @@ fn pushes(
         .unwrap_or(0)
         .min(12);
     let number = 11;
-    let target = view.slave(slave);
     let room = usize::from(area.width).saturating_sub(name + number + 6);
+    // The title of the pane has the name.
+    let target = Some(view.slave(slave)).filter(|target| target.width() <= room);
+    let target = target.unwrap_or("it");
     let middle = found.len() / 2;
     let lines = found.iter().enumerate().map(|(row, (push, effect))| {
         let part = effect.abs() / largest;

@@ -258,7 +258,7 @@ fn answers(page: &DiagnosisPage, width: usize, app: &App, view: &View) -> paint:
         )];
         for number in shown.clone() {
             let answer = &census.answers[number].answer.nodes[place];
-            spans.extend(cell(answer, app));
+            spans.extend(cell(answer, app, view));
         }
         lines.push(Line::from(spans));
     }
@@ -312,7 +312,7 @@ fn differs(census: &Census, place: usize) -> bool {
     all.any(|assumed| Some(assumed) != first)
 }
 
-fn cell(answer: &NodeAnswer, app: &App) -> [Span<'static>; 2] {
+fn cell(answer: &NodeAnswer, app: &App, view: &View) -> [Span<'static>; 2] {
     let mode = answer.assumed.mode();
     let letter = match answer.assumed {
         stickslip_core::interface::problem::AssumedMode::Plus => "S+",
@@ -324,7 +324,9 @@ fn cell(answer: &NodeAnswer, app: &App) -> [Span<'static>; 2] {
         stickslip_core::Mode::Free => answer.gap,
         _ => answer.slip,
     };
-    let numbers = [answer.f_n, answer.f_t, last].map(|value| number::fixed_width(value, 10));
+    let round_off = view.round_off();
+    let [f_n, f_t] = [answer.f_n, answer.f_t].map(|force| round_off.force(force));
+    let numbers = [f_n, f_t, round_off.length(last)].map(|value| number::fixed_width(value, 10));
     [
         Span::styled(format!(" {letter}"), app.theme.lit(mode)),
         Span::raw(format!(" {:<width$}", numbers.concat(), width = CELL - 4)),

@@ -174,16 +174,13 @@ fn keys(app: &App, view: Option<&View>, places: &ScreenAreas) -> paint::Lines {
         Overlay::Manual(_) => page(&[("↑↓", "scroll"), ("←→", "page")]),
         Overlay::Help(_) => page(&[("↑↓", "scroll")]),
         Overlay::Solver(_) => page(&[("↑↓ ←→", "scroll"), ("End", "follow")]),
-        Overlay::Chart(_) => listed(
-            &[
-                ("←→", "run"),
-                ("x", "cost"),
-                ("f", "forces"),
-                ("Tab", "next chart"),
-                ("Esc", "back"),
-            ],
-            app,
-        ),
+        Overlay::Chart(page) => {
+            let mut keys = vec![("←→", "run"), ("x", "cost")];
+            keys.extend(page.has_forces().then_some(("f", "forces")));
+            keys.extend((page.charts.len() > 1).then_some(("Tab", "next chart")));
+            keys.push(("Esc", "back"));
+            listed(&keys, app)
+        }
         Overlay::Chooser(chooser) => {
             let (back, leave) = match (chooser.typed.is_empty(), view.is_some()) {
                 (false, _) => ("clear", None),

@@ -387,6 +387,8 @@ fn numbers(
     let ratio = match decided(TestedQuantity::ShearForce) {
         _ if view.is_unreported(record.f_t / record.t_max) => number::UNREPORTED.into(),
         true => number::ratio(record.f_t, record.t_max),
+        // Round-off of a force over no friction is no ratio.
+        false if record.decision.before == Mode::Free && record.t_max == 0.0 => "–".into(),
         // T_max is settled to the tolerance, and so is its ratio to the force of a sliding node.
         false if is_at_limit(record, view) => "1".into(),
         false => round_off.ratio(record.f_t, record.t_max),

@@ -50,7 +50,10 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let tried = view.background.and_then(|background| background.tried());
     let Some(tried) = tried else {
         let inner = frame(buffer, area, Pane::Remedies, "Remedies", app);
-        let text = "Press r to try every remedy separately from the shown state.";
+        let text = match view.model.finished {
+            None => "Press r to try every remedy separately from the shown state.",
+            Some(_) => "The cures of a finished run are in its diagnosis (d).",
+        };
         paint::note(buffer, inner, text, theme);
         return;
     };
@@ -81,6 +84,7 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let width = usize::from(inner.width);
     let rows: Vec<[String; 10]> = tried.trials.iter().map(remedies::row).collect();
     let shown = shown(&rows, width);
+    let digits = count.to_string().len();
     let longest = tried.trials.iter().map(|trial| trial.label.width() + 3);
     let names = width
         .saturating_sub(3 + shown.iter().map(|(_, w)| w + 2).sum::<usize>())
@@ -111,7 +115,8 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     {
         let (mark, style) = mark(trial, app);
         let selected = number == at;
-        let name = paint::cut(&format!("{} {}", number + 1, trial.label), names);
+        let name = format!("{:<digits$} {}", number + 1, trial.label);
+        let name = paint::cut(&name, names);
         let mut spans = vec![
             paint::cursor(selected, theme),
             Span::styled(mark, style),

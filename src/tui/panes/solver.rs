@@ -16,7 +16,7 @@ use stickslip_debugger::action::present;
 use stickslip_debugger::recorded::log::LogOrigin;
 use stickslip_exchange::attach::message::Level;
 use stickslip_manual::search::Search;
-use stickslip_scene::{number, shown};
+use stickslip_scene::{joined, number, shown};
 
 /// Rows and columns per page key.
 const PAGE: usize = 10;
@@ -230,9 +230,21 @@ fn parameters(all: &[Parameter], width: usize, view: &View) -> Vec<Row> {
         let began = if now == began {
             String::new()
         } else {
-            format!(", initially {began}")
+            format!("initially {began}")
         };
-        let text = format!("{name} = {now}   ({}{began})", known.range);
+        let range = known.range.to_string();
+        // A description that lists the choices wraps; the range would be cut.
+        let range = if known.about == range { "" } else { &range };
+        let notes = joined(
+            [range, &began].into_iter().filter(|text| !text.is_empty()),
+            ", ",
+        );
+        let notes = if notes.is_empty() {
+            notes
+        } else {
+            format!("   ({notes})")
+        };
+        let text = format!("{name} = {now}{notes}");
         rows.push(Row {
             text: shown::line(&text).into_owned(),
             style: |theme| theme.strong,

@@ -46,6 +46,9 @@ pub fn draw(buffer: &mut Buffer, places: &ScreenAreas, app: &App, view: Option<&
 /// Maximum number of lines for the outcome.
 const OUTCOME: usize = 2;
 
+/// Least width of a cut title.
+const TITLE: usize = 12;
+
 /// The attached solver, how it goes back, and the counts of its warnings and errors.
 fn solver_line(app: &App, view: &View, attached: &AttachedSolver, width: usize) -> Line<'static> {
     let theme = &app.theme;
@@ -68,15 +71,17 @@ fn solver_line(app: &App, view: &View, attached: &AttachedSolver, width: usize) 
         none if none.is_empty() => none,
         counted => format!("{counted} ({})", key.unwrap_or(":log")),
     };
+    let gap = |text: &str| if text.is_empty() { "" } else { "   " };
+    let title = view.model.title.as_str();
     let parts = [
         (" stickslip ", theme.faint),
         (name.trim(), theme.heading),
         ("   ", theme.faint),
         (state, style),
-        ("   ", theme.faint),
+        (gap(&counted), theme.faint),
         (counted.as_str(), theme.warning),
-        ("   ", theme.faint),
-        (view.model.title.as_str(), theme.faint),
+        (gap(title), theme.faint),
+        (title, theme.faint),
     ];
     // A long name is cut in favour of the state.
     let fixed = state.width() + counted.width() + 17;
@@ -88,7 +93,11 @@ fn solver_line(app: &App, view: &View, attached: &AttachedSolver, width: usize) 
         } else {
             room
         };
-        let text = paint::cut(text, most.min(room));
+        // A few letters of the title are of no use.
+        let text = match at {
+            7 if room < TITLE.min(text.width()) => String::new(),
+            _ => paint::cut(text, most.min(room)),
+        };
         room -= text.width();
         spans.push(Span::styled(text, style));
     }
@@ -206,27 +215,32 @@ fn outcome(app: &App, view: &View, width: u16) -> paint::Lines {
         let turns = (app.busy.as_millis() / TURN.as_millis()) as usize;
         let turn = SPINNER[turns % SPINNER.len()];
         let progress = view.attached.and_then(|attached| attached.log.progress());
-        let far = view
-            .frames
-            .last()
-            .map(|frame| {
-                let state = &frame.state;
-                let load = names::load_of(view.model, state.start.leg, state.load_factor);
-                match progress {
-                    Some(_) => load,
-                    None => format!("{load}, {}", names::position(state.next)),
-                }
-            })
-            .unwrap_or_default();
+        let state = view.frames.last().map(|frame| &frame.state);
+        let load = state.map_or(String::new(), |state| {
+            names::load_of(view.model, state.start.leg, state.load_factor)
+        });
+        let place = state.map_or(String::new(), |state| {
+            format!(", {}", names::position(state.next))
+        });
         let took = match app.busy.as_secs() {
             0 | 1 => String::new(),
             seconds => format!(", {seconds} s"),
         };
-        // The progress of a long step leaves no room for the position.
         let steps = counted(view.frames.len() - 1, "step");
-        let steps = progress.unwrap_or_else(|| format!("{steps} so far"));
-        let text = format!(" {turn} solving: {far}; {steps}{took}; Ctrl-C stops");
-        let text = paint::cut(&text, width as usize);
+        let line = |place: &str| format!(" {turn} solving: {load}{place}{took}; Ctrl-C stops");
+        // The progress of a long step leaves no room for the position; otherwise the line above shows it.
+        let lines = match progress {
+            Some(progress) => vec![line(&format!("; {progress}"))],
+            None => vec![
+                line(&format!("{place}; {steps} so far")),
+                line(&format!("; {steps} so far")),
+                line(""),
+            ],
+        };
+        let fits = |text: &&String| text.width() <= usize::from(width);
+        let text = lines.iter().find(fits).or(lines.last());
+        let text = text.map_or("", String::as_str);
+        let text = paint::cut(text, width as usize);
         let again = view.attached.map_or("", |attached| attached.again);
         let first = (!again.is_empty()).then(|| format!("   {again} first"));
         return [Some(text), first]
@@ -267,7 +281,7 @@ fn outcome(app: &App, view: &View, width: u16) -> paint::Lines {
             .filter(|aside| !text.ends_with(aside)),
         "   ",
     );
-    let aside = paint::cut(&asides, room);
+    let aside = whole_parts(&asides, room);
     // A long aside needs a line; a short one needs the end of the last line.
     let (most, end) = match aside.width() {
         0 => (OUTCOME, 0),
@@ -303,9 +317,22 @@ fn outcome(app: &App, view: &View, width: u16) -> paint::Lines {
     lines
 }
 
+/// The parts of an aside that fit: a part is shown whole or not at all, unless it is the only one.
+fn whole_parts(aside: &str, room: usize) -> String {
+    let cut = paint::cut(aside, room);
+    match cut.rfind("  ") {
+        Some(at) if cut != aside => format!("{} …", cut[..at].trim_end()),
+        _ => cut,
+    }
+}
+
 /// What failed; the line above shows the position.
 fn diagnosed(page: &DiagnosisPage) -> String {
-    let what = page.what.split_once(": ").map_or("", |(_, what)| what);
+    // The page of an attached solver begins with the reason.
+    let what = match page.what.split_once(": ") {
+        Some((place, what)) if place.starts_with("increment ") => what,
+        _ => &page.what,
+    };
     format!("✗ {what}")
 }
 

@@ -225,7 +225,7 @@ fn details(page: &ChartPage, theme: &Theme, width: usize, has_legend: bool) -> p
         "   {error}   {} s, {}, {}",
         number::sig4(point.seconds),
         counted(point.factorizations, "factorization"),
-        counted(point.minors, "minor iteration")
+        counted(point.minors, "minor")
     );
     let about = page.charts.last().and_then(|chart| chart.about.last());
     let lines = [
