@@ -291,9 +291,9 @@ fn the_end_of_the_path_is_named_where_contacts_change_or_an_element_is_inverted(
     }
 }
 
-/// Where a node that carries a force reaches the end of its surface, or has got behind it, the surface continued past its ends is tried.
+/// Where a node slides off the end of its surface, or has got behind it, the surface continued past its ends is tried.
 #[test]
-fn a_surface_whose_end_a_node_has_reached_is_tried_with_continued_ends() {
+fn a_surface_that_a_node_leaves_at_its_end_is_tried_with_continued_ends() {
     for (file, surface) in [
         ("path-ends-behind-the-end-of-a-surface.ron", "f"),
         ("slides-off-the-end-of-its-surface.ron", "fp"),

@@ -34,15 +34,16 @@ struct NearEnd {
     is_behind: bool,
 }
 
-/// The surfaces at whose end a slave node touches, or behind whose end it is, in the last equilibrium.
+/// The surfaces behind whose end a slave node is in the last equilibrium, or at whose end it slides there and which it has left in
+/// the failed iterate.
 pub fn ending(model: &Model, state: &State) -> Vec<usize> {
-    let touches = |found: &NearEnd| {
-        let node = &state.start.nodes[found.slave];
-        let spot = node.spot.filter(|_| node.mode != Mode::Free);
-        spot.is_some_and(|spot| spot.surface == found.surface)
+    let leaves = |found: &NearEnd| {
+        let [before, now] = [&state.start.nodes, &state.nodes].map(|nodes| &nodes[found.slave]);
+        let spot = before.spot.filter(|_| before.mode == Mode::Sliding);
+        now.spot.is_none() && spot.is_some_and(|spot| spot.surface == found.surface)
     };
     let mut found = near_ends(model, state);
-    found.retain(|found| found.is_behind || touches(found));
+    found.retain(|found| found.is_behind || leaves(found));
     let mut surfaces: Vec<usize> = found.iter().map(|found| found.surface).collect();
     surfaces.sort_unstable();
     surfaces.dedup();
