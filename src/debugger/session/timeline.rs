@@ -198,16 +198,15 @@ impl Timeline {
     /// Compares the current branch with another one, by default with its parent.
     pub(super) fn compare_with(&self, other: Option<&str>) -> Result<String, Refusal> {
         let current = self.tree.current();
-        let other =
-            match other {
-                Some(name) => branches::find(&self.tree, name)?,
-                None => self.tree.branches()[current].parent.ok_or(
-                    match self.tree.branches().len() {
-                        1 => Refusal::OneBranch,
-                        _ => Refusal::WhichBranch,
-                    },
-                )?,
-            };
+        let others = self.tree.branches();
+        let unnamed = match others.len() {
+            1 => Refusal::OneBranch,
+            _ => Refusal::WhichBranch,
+        };
+        let other = match other {
+            Some(name) => branches::find(&self.tree, name)?,
+            None => others[current].parent.ok_or(unnamed)?,
+        };
         if other == current {
             return Err(Refusal::SameBranch);
         }

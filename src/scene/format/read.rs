@@ -103,8 +103,8 @@ fn is_at_end(text: &str, error: &SpannedError) -> bool {
     start.col + start.line > 2 && rest.is_some_and(|rest| rest.trim().is_empty())
 }
 
-/// What the word is whose beginning ron has read as a number up to here: a decimal, `3.0`, is no whole number, and `3mm` is none
-/// at all.
+/// The kind of value that was expected, if ron has read only the beginning of a word as a number, up to here: `3.0` is not a whole
+/// number, and `3mm` is not a number.
 fn half_read(text: &str, byte: usize) -> Option<&'static str> {
     let (before, after) = text.split_at_checked(byte)?;
     let is_number = before.ends_with(|c: char| c.is_ascii_digit());
