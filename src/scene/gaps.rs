@@ -23,7 +23,6 @@ const MOST: usize = 5;
 const SAME_WAY: f64 = 0.5;
 
 /// The initial gaps of the slave nodes above one surface.
-#[derive(Debug, Clone, PartialEq)]
 pub struct StartGaps {
     /// Number of the surface.
     pub surface: usize,
@@ -148,7 +147,7 @@ pub fn warnings(model: &Model) -> Vec<String> {
 }
 
 /// A surface with the wrong orientation.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy)]
 pub struct TurnedSurface {
     /// Number of the surface.
     pub surface: usize,

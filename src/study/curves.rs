@@ -18,7 +18,6 @@ const MOST_ENTRIES: usize = 48;
 const MARKERS: usize = 12;
 
 /// Curves over two axes.
-#[derive(Debug, Clone, PartialEq)]
 pub struct CurveChart {
     /// Above it.
     pub title: String,
@@ -33,7 +32,6 @@ pub struct CurveChart {
 }
 
 /// An axis of a chart.
-#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Axis {
     /// What it is called.
     pub name: String,
@@ -42,7 +40,6 @@ pub struct Axis {
 }
 
 /// A line with markers, and an entry of the legend.
-#[derive(Debug, Clone, PartialEq)]
 pub struct Curve {
     /// Text in the legend.
     pub label: String,

@@ -1,7 +1,7 @@
 //! Logarithmic axes, fitted to the data.
 
 /// A logarithmic axis.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Clone, Copy)]
 pub struct LogAxis {
     /// Decimal logarithm of the lower end.
     low: f64,

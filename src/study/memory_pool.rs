@@ -10,7 +10,7 @@ use stickslip_core::{Estimate, Model};
 use stickslip_scene::memory;
 
 /// Memory in use, and the number of runs.
-#[derive(Debug, Default)]
+#[derive(Default)]
 struct MemoryUse {
     bytes: f64,
     runs: usize,
@@ -19,7 +19,6 @@ struct MemoryUse {
 }
 
 /// Memory that runs take and return.
-#[derive(Debug)]
 pub struct MemoryPool {
     free: f64,
     taken: Mutex<MemoryUse>,
@@ -27,7 +26,6 @@ pub struct MemoryPool {
 }
 
 /// The memory of a run, returned when dropped.
-#[derive(Debug)]
 pub struct MemoryShare<'a> {
     pool: &'a MemoryPool,
     bytes: f64,

@@ -43,7 +43,6 @@ impl Patch {
 }
 
 /// The occupied parts of a window.
-#[derive(Debug, Clone, PartialEq)]
 pub struct OccupiedArea {
     window: Patch,
     taken: Vec<Patch>,

@@ -139,7 +139,7 @@ impl Cost {
 }
 
 /// How to measure a chart.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Clone, Copy)]
 pub struct Measure {
     /// Kind of cost.
     pub cost: Cost,

@@ -13,7 +13,6 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 /// The problems, the variants and the verdicts.
-#[derive(Debug, Clone, PartialEq)]
 pub struct Survey {
     /// The problems.
     pub population: Population,
@@ -24,7 +23,7 @@ pub struct Survey {
 }
 
 /// Number of problems by verdict of a variant, separately for problems with and without a solution.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Clone, Copy, Default)]
 pub struct Tally {
     /// Problems with a solution.
     pub solvable: usize,

@@ -111,7 +111,7 @@ pub struct Message {
 }
 
 /// What a file that is being loaded will show.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy)]
 pub enum LoadTarget {
     /// Another scene, with or without a lesson.
     Scene,
@@ -120,7 +120,6 @@ pub enum LoadTarget {
 }
 
 /// All state of the screen that is not in the session.
-#[derive(Debug, Clone)]
 pub struct App {
     /// Colours and weights.
     pub theme: Theme,

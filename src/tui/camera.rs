@@ -4,7 +4,7 @@ use crate::view::View;
 use stickslip_debugger::explain::outline::{self, Projection};
 
 /// Pan and zoom.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Clone, Copy)]
 pub struct Camera {
     /// Magnification; 1 shows the whole shape.
     pub zoom: f64,

@@ -94,7 +94,6 @@ impl Chooser {
 }
 
 /// The preview of the selected entry.
-#[derive(Debug, Clone)]
 pub struct Preview {
     /// Name of the entry.
     pub name: String,
@@ -103,7 +102,6 @@ pub struct Preview {
 }
 
 /// Content of a preview: a scene, or a lesson with its scene.
-#[derive(Debug, Clone)]
 pub struct PreviewContent {
     /// Whether it is a lesson.
     pub is_lesson: bool,
@@ -154,7 +152,7 @@ impl Preview {
 }
 
 /// Loads previews on a background thread.
-#[derive(Debug, Default)]
+#[derive(Default)]
 pub struct PreviewLoader(Option<(String, Receiver<Preview>)>);
 
 impl PreviewLoader {

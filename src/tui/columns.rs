@@ -6,7 +6,7 @@ use ratatui::style::{Modifier, Style};
 use std::ops::Range;
 
 /// A visible iteration and its screen column.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 pub struct Column {
     /// Index of the iteration.
     pub at: usize,

@@ -1,7 +1,6 @@
 //! Input of the debugger: keys, clicks and pasted text, from a terminal or a page.
 
 /// An input.
-#[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Event {
     /// A key press.
     Key(KeyEvent),
@@ -12,7 +11,7 @@ pub enum Event {
 }
 
 /// A key press.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy)]
 pub struct KeyEvent {
     /// The key.
     pub code: KeyCode,
@@ -83,7 +82,7 @@ impl Modifiers {
 }
 
 /// A mouse action in a cell of the screen.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy)]
 pub struct MouseEvent {
     /// What was done.
     pub kind: MouseAction,
@@ -94,7 +93,7 @@ pub struct MouseEvent {
 }
 
 /// A mouse action.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy)]
 pub enum MouseAction {
     /// The left button was pressed.
     Click,

@@ -12,7 +12,6 @@ const MOST: usize = 1024;
 const NAMED: usize = 3;
 
 /// Queued input.
-#[derive(Debug, Clone, PartialEq)]
 pub enum QueuedInput {
     /// A key.
     Key(KeyEvent),
@@ -37,7 +36,7 @@ stickslip_core::words! {
 }
 
 /// The queue, oldest input first.
-#[derive(Debug, Clone, Default)]
+#[derive(Default)]
 pub struct Ahead {
     queue: VecDeque<QueuedInput>,
     awaited: Option<WaitReason>,

@@ -20,7 +20,7 @@ pub struct Reading {
 }
 
 /// The visible part of a lesson page.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 pub(super) struct VisibleLines {
     /// The first visible line, and the one after the last.
     pub from: usize,
@@ -30,7 +30,7 @@ pub(super) struct VisibleLines {
 }
 
 /// The current lesson, and prediction mode.
-#[derive(Debug, Clone, Default)]
+#[derive(Default)]
 pub struct Learning {
     /// The lesson.
     pub lesson: Option<Tutor>,

@@ -2,7 +2,7 @@
 //! `stickslip screens` draws them as pictures.
 
 /// A screen of the debugger.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 pub struct MainScreen<'a> {
     /// Its name.
     pub name: &'a str,

@@ -17,7 +17,6 @@ pub enum Verdict {
 }
 
 /// A check.
-#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CheckResult {
     /// The ability that was tested.
     pub what: &'static str,
@@ -28,7 +27,7 @@ pub struct CheckResult {
 }
 
 /// The results for one solver.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Default)]
 pub struct Report {
     /// Name and version of the solver.
     pub name: String,

@@ -9,7 +9,7 @@ use crate::{Command, ExportScope};
 use stickslip_core::{Capabilities, Intervention, Mode};
 
 /// What an action needs of the current solver.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy)]
 enum Need {
     /// Forcing a mode for one iteration.
     Force,

@@ -6,7 +6,7 @@ use stickslip_manual::NoPage;
 use stickslip_study::read::NoVary;
 
 /// Why a typed line is not an action, with a hint at what would be valid.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, thiserror::Error)]
 pub enum ParseError {
     /// The line is empty.
     #[error("type the name of an action; ? lists all actions")]

@@ -39,7 +39,7 @@ impl<T> WorstFinding<T> {
 }
 
 /// A master node inside a slave's body.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Clone, Copy)]
 pub struct PenetratingMaster {
     /// Number of the node in the scene.
     pub node: usize,
@@ -50,7 +50,7 @@ pub struct PenetratingMaster {
 }
 
 /// The audit of a history.
-#[derive(Debug, Clone, Default)]
+#[derive(Default)]
 pub struct Audit {
     /// Number of accepted increments.
     pub increments: u32,

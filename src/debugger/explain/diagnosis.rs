@@ -32,7 +32,6 @@ const MOST_PUSHES: usize = 24;
 const MOST_NAMES: usize = 6;
 
 /// Diagnosis of a cycle.
-#[derive(Debug, Clone, PartialEq)]
 pub struct Diagnosis {
     /// The cycle that starts from the nodes' states. Nodes are indices in the problem.
     pub cycle: Cycle,
@@ -53,7 +52,6 @@ pub struct Diagnosis {
 }
 
 /// One iteration of a cycle.
-#[derive(Debug, Clone, PartialEq)]
 pub struct Phase {
     /// The record of each node.
     pub records: Vec<ContactRecord>,
@@ -63,7 +61,7 @@ pub struct Phase {
 }
 
 /// The main cause of a node's mode change.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Clone, Copy)]
 pub struct Push {
     /// Index of the node whose mode changes.
     pub node: usize,

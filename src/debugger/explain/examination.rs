@@ -20,7 +20,7 @@ pub const DONE: &str = "The history is complete, so there is no next problem.";
 pub const NOT_CONDENSED: &str = "The bodies cannot be condensed to the interface here, so there is no small problem to examine.";
 
 /// Why it is unknown whether the minor iterations cycle.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, thiserror::Error)]
 pub enum NotExamined {
     /// There is no interface problem, because the solver does not condense.
     #[error("{NOT_CONDENSED}")]

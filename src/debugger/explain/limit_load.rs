@@ -173,7 +173,7 @@ fn words((load, how): &(f64, PathEnd), model: &Model) -> String {
 }
 
 /// Resistance of the remaining contacts against a motion.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Clone, Copy, Default)]
 struct Resistance {
     /// Available and used friction (power).
     friction: [f64; 2],

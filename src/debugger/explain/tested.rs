@@ -4,7 +4,7 @@ use super::influence::{Influence, NodePush};
 use stickslip_core::{Decision, TestedQuantity};
 
 /// Dimension of a tested quantity.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy)]
 pub enum Dimension {
     /// A force.
     Force,

@@ -38,7 +38,7 @@ struct TouchDecision {
 }
 
 /// Result of an increment with `touch: start`.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Clone, Copy)]
 pub struct TouchDifference {
     /// The increment.
     pub increment: u32,

@@ -19,7 +19,7 @@ pub struct Cost {
 }
 
 /// Why a word does not name a branch.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, thiserror::Error)]
 pub enum NoBranch {
     /// No branch has this name; a list of the branches.
     #[error("branch '{0}' does not exist; branches: {1}")]

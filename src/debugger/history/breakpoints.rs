@@ -112,7 +112,7 @@ pub struct Breakpoints {
 }
 
 /// The breakpoint does not exist.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, thiserror::Error)]
 #[error("there is no breakpoint {id}; {listed}")]
 pub struct NoBreakpoint {
     /// Its number.

@@ -44,7 +44,7 @@ pub enum BranchEnd {
 }
 
 /// Summary of a branch.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug)]
 pub struct Summary {
     /// Number in order of creation, from 0; `b1` has number 0.
     pub number: usize,

@@ -88,7 +88,7 @@ impl Watch {
 pub struct Watches(Vec<Watch>);
 
 /// Why a watch cannot be added or removed.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, thiserror::Error)]
 pub enum WatchError {
     /// The name is taken.
     #[error("watch '{0}' already exists; :unwatch removes it")]

@@ -28,7 +28,7 @@ pub const FORMAT: u32 = 1;
 const EXTENSION: &str = "journal";
 
 /// The first line.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct JournalHeader {
     /// Format version.
@@ -295,7 +295,6 @@ impl Journal {
 }
 
 /// A journal that has been read.
-#[derive(Debug, Clone, PartialEq)]
 pub struct Record {
     /// Name of the file for messages.
     pub file: String,

@@ -52,7 +52,7 @@ const MANY: usize = 100;
 /// Last line of a page whose analysis was interrupted.
 const STOPPED: &str = "interrupted; :census starts it again";
 /// The remedies tried from one position so far.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub struct RemedyTrials {
     /// Position that the trials start from.
     pub place: LinePlace,
@@ -86,7 +86,6 @@ struct Helper {
 }
 
 /// Handle of the background thread, with its results.
-#[derive(Debug)]
 pub struct Background {
     asks: Sender<BackgroundRequest>,
     replies: Receiver<BackgroundReply>,

@@ -15,7 +15,6 @@ use stickslip_scene::{joined, sig4};
 const CLOSE: f64 = 0.05;
 
 /// An open question, with its answer.
-#[derive(Debug, Clone)]
 pub struct TutorQuestion {
     /// The choices, if there are any.
     pub options: Vec<String>,
@@ -41,7 +40,6 @@ pub enum AnswerKind {
     Number,
 }
 
-#[derive(Debug, Clone, PartialEq)]
 enum RightAnswer {
     Mode(Mode),
     Choice(usize),

@@ -47,7 +47,7 @@ pub enum LessonRefusal {
 }
 
 /// Why a quantity is unavailable or a lesson is invalid.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, thiserror::Error)]
 pub enum LessonError {
     /// No iteration has been solved.
     #[error("no iteration has been solved yet")]

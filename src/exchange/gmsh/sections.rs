@@ -9,7 +9,7 @@ use crate::FormatError;
 pub(super) const HEAD: &[u8] = b"$MeshFormat";
 
 /// Versions with different sections.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy)]
 enum Version {
     Two,
     Four,

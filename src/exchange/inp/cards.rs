@@ -12,7 +12,6 @@ use super::source::{DeckLocation, Done, Fault, SourceLine, plain};
 use crate::bail;
 
 /// A keyword with its parameters and data.
-#[derive(Debug)]
 pub(super) struct Card<'t> {
     /// Uppercase, without the star and without spaces.
     pub key: String,
@@ -23,7 +22,6 @@ pub(super) struct Card<'t> {
     pub lines: Vec<SourceLine<'t>>,
 }
 
-#[derive(Debug, Clone)]
 pub(super) struct Parameter {
     /// Uppercase, without spaces.
     pub name: String,
@@ -36,7 +34,7 @@ pub(super) struct Parameter {
 pub(super) const ANY: &[&str] = &["*"];
 
 /// A word of a data line.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 pub(super) struct CardCell<'t> {
     pub text: &'t str,
     line: SourceLine<'t>,

@@ -34,7 +34,7 @@ pub struct Reader {
 }
 
 /// Kind of a set's members.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy)]
 pub(super) enum MeshKind {
     Nodes,
     Elements,

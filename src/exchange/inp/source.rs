@@ -12,7 +12,7 @@ pub struct DeckLocation {
 }
 
 /// An error in a deck.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, thiserror::Error)]
 #[error("{file}:{}:{}: {message}", place.line, place.column)]
 pub struct DeckError {
     /// Name of the file.
@@ -58,7 +58,7 @@ impl From<(DeckLocation, String)> for Fault {
 }
 
 /// The texts of a deck and its include files.
-#[derive(Debug, Default)]
+#[derive(Default)]
 pub(super) struct Sources {
     pub names: Vec<String>,
     texts: Vec<String>,
@@ -67,7 +67,7 @@ pub(super) struct Sources {
 }
 
 /// A line of a deck.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 pub(super) struct SourceLine<'t> {
     pub text: &'t str,
     pub file: usize,

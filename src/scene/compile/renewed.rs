@@ -30,7 +30,7 @@ pub(crate) struct Choices {
 }
 
 /// A model and the scene from which it was compiled.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 pub(crate) struct Compiled<'a> {
     pub(crate) spec: &'a Spec,
     pub(crate) names: &'a Names,

@@ -31,7 +31,7 @@ const LABELS: u16 = 9;
 const PUSHERS: usize = 6;
 
 /// A picture of the contact.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Clone, Copy)]
 enum Picture {
     Cone,
     Circle,

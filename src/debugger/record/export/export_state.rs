@@ -53,7 +53,7 @@ stickslip_core::words! {
 }
 
 /// What a picture contains, and its size.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Default)]
 pub struct PictureRequest {
     /// The only part; `None` for shape, table and timeline.
     pub only: Option<PicturePart>,
