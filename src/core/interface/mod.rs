@@ -4,7 +4,7 @@
 //!   [`kinematics`]: position of a node relative to its surface.
 //! - [`minor`]: a minor iteration at one node; [`method`]: the strategy's decisions in it; [`minor_history`]: inputs of the minor
 //!   iterations so far, and their cycles; [`cycle`]: cycle detection for any iterations.
-//! - [`blocks`]: a sparse compliance; [`census`], [`lemke`], [`copositive`] and [`sweep`]: searches for a consistent state over all nodes; [`tableau`]: pivoting
+//! - [`blocks`]: a sparse compliance; [`census`], [`pivoting`] and [`sweep`]: searches for a consistent state over all nodes; [`tableau`]: pivoting
 //!   for two of them; [`vertex`]: selects unique forces if they are not unique; [`branches`] and [`feasible`]: rule out
 //!   inconsistent combinations in a census of many nodes.
 //! - [`cone`], `cone_law`, [`cone_census`]: problems in space, with friction cones.
@@ -18,17 +18,16 @@ pub mod census;
 pub mod cone;
 pub mod cone_census;
 mod cone_law;
-pub mod copositive;
 pub mod cycle;
 pub mod definite;
 pub mod family;
 pub mod feasible;
 pub mod kinematics;
-pub mod lemke;
 pub mod line_search;
 pub mod method;
 pub mod minor;
 pub mod minor_history;
+pub mod pivoting;
 pub mod problem;
 pub mod response;
 pub mod rows;

@@ -2,18 +2,19 @@
 
 mod block;
 mod census;
-mod copositive;
 pub(crate) mod gauss_seidel;
 mod ladder;
 mod least;
-mod lemke;
 mod newton;
+mod pivoting;
 mod sliding;
 mod table2;
 
 pub use gauss_seidel::SETTLED;
 
+use crate::interface::pivoting::Form;
 use crate::{BoundUpdate, Method, Settings, Strategy};
+use pivoting::PivotingStrategy;
 use std::ops::Deref;
 use std::sync::Arc;
 
@@ -46,9 +47,9 @@ pub fn method(strategy: Strategy) -> &'static dyn Method {
         Strategy::SlidingLeast => &least::SlidingLeast,
         Strategy::Block => &block::Block,
         Strategy::Newton => &newton::Newton,
-        Strategy::Lemke => &lemke::LemkeStrategy,
+        Strategy::Lemke => &PivotingStrategy(Form::Klarbring),
         Strategy::Census => &census::CensusStrategy,
-        Strategy::Copositive => &copositive::CopositiveStrategy,
+        Strategy::Copositive => &PivotingStrategy(Form::Copositive),
         Strategy::GaussSeidel => &gauss_seidel::GaussSeidel,
     }
 }

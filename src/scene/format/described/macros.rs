@@ -46,7 +46,7 @@ macro_rules! name_field {
     }};
 }
 
-/// Enum variants have fields in braces or none.
+/// Defines a type and describes it. Enum variants have fields in braces or none.
 macro_rules! described {
     ($(#[$($meta:tt)*])* $vis:vis struct $name:ident {
         $($(#[$($part_meta:tt)*])* $part_vis:vis $part:ident : $type:ty $(=> $mark:ident)?),* $(,)?
@@ -58,62 +58,16 @@ macro_rules! described {
             $($(#[$($part_meta)*])* $part_vis $part: $type),*
         }
 
-        const _: () = {
-            use $crate::format::described;
-
-            #[allow(non_snake_case)]
-            impl described::Described for $name {
-                fn walk(
-                    &mut self,
-                    place: &described::ScalarPlace<'_>,
-                    visit: &mut described::Visit<'_>,
-                ) {
-                    let $name { $($part),* } = self;
-                    $(described::macros::walk_field!($part, place, visit $(, $mark)?);)*
-                }
-                fn called(&self) -> Option<&str> {
-                    let $name { $($part),* } = self;
-                    [$(described::macros::name_field!($part $(, $mark)?)),*].into_iter().flatten().next()
-                }
-                fn kind() -> String {
-                    described::link(stringify!($name))
-                }
-                fn blank() -> String {
-                    let every = false $(|| described::macros::has_default!($($meta)*))*;
-                    described::blank_form("", &[$((
-                        stringify!($part),
-                        every $(|| described::macros::has_default!($($part_meta)*))*,
-                        <$type as described::Described>::blank(),
-                    )),*])
-                }
-                fn shown(&self) -> String {
-                    described::OWN_DEFAULTS.to_owned()
-                }
-                fn types(into: &mut Vec<described::Type>) -> Result<(), String> {
-                    if described::contains(into, stringify!($name)) {
-                        return Ok(());
-                    }
-                    let every = false $(|| described::macros::has_default!($($meta)*))*;
-                    let $name { $($part),* } = &described::read_blank(&Self::blank())?;
-                    into.push(described::Type {
-                        name: stringify!($name),
-                        docs: stickslip_core::model::documented::text(&[$(stickslip_core::doc_line!($($meta)*)),*]),
-                        forms: vec![described::Form {
-                            name: None,
-                            docs: String::new(),
-                            fields: vec![$(described::field_of(
-                                stringify!($part),
-                                &[$(stickslip_core::doc_line!($($part_meta)*)),*],
-                                $part,
-                                every $(|| described::macros::has_default!($($part_meta)*))*,
-                            )),*],
-                        }],
-                    });
-                    $(<$type as described::Described>::types(into)?;)*
-                    Ok(())
-                }
-            }
-        };
+        $crate::format::described::macros::describe! {
+            $name, stringify!($name), &[$(stickslip_core::doc_line!($($meta)*)),*],
+            false $(|| $crate::format::described::macros::has_default!($($meta)*))*,
+            [$name, None, &[], { $(
+                $part $(=> $mark)?,
+                &[$(stickslip_core::doc_line!($($part_meta)*)),*],
+                false $(|| $crate::format::described::macros::has_default!($($part_meta)*))*,
+                <$type as $crate::format::described::Described>::blank();
+            )* }]
+        }
     };
     ($(#[$($meta:tt)*])* $vis:vis enum $name:ident {
         $($(#[$($form_meta:tt)*])* $form:ident $({
@@ -129,10 +83,37 @@ macro_rules! described {
             })?),*
         }
 
+        $crate::format::described::macros::describe! {
+            $name, stringify!($name), &[$(stickslip_core::doc_line!($($meta)*)),*], false,
+            $([$name::$form, Some(stringify!($form)), &[$(stickslip_core::doc_line!($($form_meta)*)),*], { $($(
+                $part $(=> $mark)?,
+                &[$(stickslip_core::doc_line!($($part_meta)*)),*],
+                false $(|| $crate::format::described::macros::has_default!($($part_meta)*))*,
+                <$type as $crate::format::described::Described>::blank();
+            )*)? }])*
+        }
+    };
+}
+
+/// Describes a type: its name and docs, whether all fields may be omitted, and its forms, of which a struct has one without a
+/// name. A field has its docs, whether it may be omitted, and its text in a blank form.
+macro_rules! describe {
+    ($name:ident, $title:expr, $docs:expr, $every:expr, $([
+        $($path:ident)::+, $form:expr, $form_docs:expr, {
+            $($part:ident $(=> $mark:ident)?, $part_docs:expr, $optional:expr, $blank:expr;)*
+        }
+    ])+) => {
         const _: () = {
             use $crate::format::described;
 
-            #[allow(non_snake_case)]
+            fn blanks() -> Vec<String> {
+                vec![$(described::blank_form(
+                    $form,
+                    &[$((stringify!($part), $every || $optional, $blank)),*],
+                )),+]
+            }
+
+            #[allow(non_snake_case, irrefutable_let_patterns)]
             impl described::Described for $name {
                 fn walk(
                     &mut self,
@@ -140,74 +121,65 @@ macro_rules! described {
                     visit: &mut described::Visit<'_>,
                 ) {
                     match self {
-                        $($name::$form $({ $($part),* })? => {
-                            $($(described::macros::walk_field!($part, place, visit $(, $mark)?);)*)?
-                        })*
+                        $($($path)::+ { $($part),* } => {
+                            $(described::macros::walk_field!($part, place, visit $(, $mark)?);)*
+                        })+
                     }
                 }
+
                 fn called(&self) -> Option<&str> {
                     match self {
-                        $($name::$form $({ $($part),* })? => {
+                        $($($path)::+ { $($part),* } => {
                             let called: &[Option<&str>] =
-                                &[$($(described::macros::name_field!($part $(, $mark)?)),*)?];
+                                &[$(described::macros::name_field!($part $(, $mark)?)),*];
                             called.iter().copied().flatten().next()
-                        })*
+                        })+
                     }
                 }
+
                 fn kind() -> String {
-                    described::link(stringify!($name))
+                    described::link($title)
                 }
+
                 fn blank() -> String {
-                    let all = [$(described::macros::blank_variant!($form $({
-                        $((
-                            stringify!($part),
-                            false $(|| described::macros::has_default!($($part_meta)*))*,
-                            <$type as described::Described>::blank(),
-                        )),*
-                    })?)),*];
-                    all[0].clone()
+                    blanks().swap_remove(0)
                 }
+
                 fn shown(&self) -> String {
-                    let name = match self {
-                        $($name::$form { .. } => stringify!($form)),*
+                    let form: Option<&str> = match self {
+                        $($($path)::+ { .. } => $form),+
                     };
-                    name.to_owned()
+                    form.unwrap_or(described::OWN_DEFAULTS).to_owned()
                 }
+
                 fn types(into: &mut Vec<described::Type>) -> Result<(), String> {
-                    if described::contains(into, stringify!($name)) {
+                    if described::contains(into, $title) {
                         return Ok(());
                     }
-                    let mut forms = Vec::new();
+                    let place = into.len();
+                    into.push(described::Type {
+                        name: $title,
+                        docs: stickslip_core::model::documented::text($docs),
+                        forms: Vec::new(),
+                    });
+                    let mut blanks = blanks().into_iter();
                     $(
-                        let blank = described::macros::blank_variant!($form $({
-                            $((
-                                stringify!($part),
-                                false $(|| described::macros::has_default!($($part_meta)*))*,
-                                <$type as described::Described>::blank(),
-                            )),*
-                        })?);
-                        let $name::$form $({ $($part),* })? = &described::read_blank(&blank)? else {
+                        let blank = blanks.next().unwrap_or_default();
+                        let $($path)::+ { $($part),* } = &described::read_blank(&blank)? else {
                             return Err(format!("{blank}: read as another form"));
                         };
-                        forms.push(described::Form {
-                            name: Some(stringify!($form)),
-                            docs: stickslip_core::model::documented::text(
-                                &[$(stickslip_core::doc_line!($($form_meta)*)),*],
-                            ),
-                            fields: vec![$($(described::field_of(
+                        into[place].forms.push(described::Form {
+                            name: $form,
+                            docs: stickslip_core::model::documented::text($form_docs),
+                            fields: vec![$(described::field_of(
                                 stringify!($part),
-                                &[$(stickslip_core::doc_line!($($part_meta)*)),*],
+                                $part_docs,
                                 $part,
-                                false $(|| described::macros::has_default!($($part_meta)*))*,
-                            )),*)?],
+                                $every || $optional,
+                            )),*],
                         });
-                    )*
-                    into.push(described::Type {
-                        name: stringify!($name),
-                        docs: stickslip_core::model::documented::text(&[$(stickslip_core::doc_line!($($meta)*)),*]),
-                        forms,
-                    });
-                    $($($(<$type as described::Described>::types(into)?;)*)?)*
+                        $(described::types_of($part, into)?;)*
+                    )+
                     Ok(())
                 }
             }
@@ -215,14 +187,4 @@ macro_rules! described {
     };
 }
 
-/// The shortest text of a variant: only its name if it has no fields.
-macro_rules! blank_variant {
-    ($form:ident) => {
-        stringify!($form).to_owned()
-    };
-    ($form:ident { $($fields:tt)* }) => {
-        $crate::format::described::blank_form(stringify!($form), &[$($fields)*])
-    };
-}
-
-pub(crate) use {blank_variant, described, has_default, name_field, walk_field};
+pub(crate) use {describe, described, has_default, name_field, walk_field};

@@ -264,7 +264,7 @@ pub(crate) fn field_of<T: Described>(
 }
 
 /// Adds the types used by a field.
-fn types_of<T: Described>(_: &T, into: &mut Vec<Type>) -> Result<(), String> {
+pub(crate) fn types_of<T: Described>(_: &T, into: &mut Vec<Type>) -> Result<(), String> {
     T::types(into)
 }
 

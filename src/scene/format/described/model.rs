@@ -1,10 +1,10 @@
 //! Types that the scene file shares with the solver: defined with [`documented!`](stickslip_core::model::documented) and listed
 //! here.
 
-use super::types::{Form, OWN_DEFAULTS, Type, contains, lines_of, link, of_words, read_blank};
+use super::macros::describe;
+use super::types::{Type, contains, lines_of, of_words};
 use super::words::{of_word, word, words};
-use super::{Choice, Described, Scalar, ScalarPlace, Visit, field_of, one_of, types_of};
-use stickslip_core::model::documented::text;
+use super::{Choice, Described, Scalar, ScalarPlace, Visit, one_of};
 use stickslip_core::model::{
     AtCycle, AtLimit, Axis, Geometry, LinearSolver, PointForce, Refactor, ResidualMethod,
     SlavePoints, SlipCount, Sticking, TieRule,
@@ -16,31 +16,11 @@ use stickslip_core::{
 
 macro_rules! fields {
     ($name:ident { $($part:ident),* $(,)? }) => {
-        impl Described for $name {
-            fn walk(&mut self, place: &ScalarPlace<'_>, visit: &mut Visit<'_>) {
-                let $name { $($part),* } = self;
-                $($part.walk(&place.field(stringify!($part)), visit);)*
-            }
-            fn kind() -> String {
-                link($name::DOCS.name)
-            }
-            fn blank() -> String {
-                "()".to_owned()
-            }
-            fn shown(&self) -> String {
-                OWN_DEFAULTS.to_owned()
-            }
-            fn types(into: &mut Vec<Type>) -> Result<(), String> {
-                if contains(into, $name::DOCS.name) {
-                    return Ok(());
-                }
-                let $name { $($part),* } = &read_blank(&Self::blank())?;
-                let fields = vec![$(field_of(stringify!($part), lines_of(&$name::DOCS, stringify!($part)), $part, true)),*];
-                let form = Form { name: None, docs: String::new(), fields };
-                into.push(Type { name: $name::DOCS.name, docs: text($name::DOCS.lines), forms: vec![form] });
-                $(types_of($part, into)?;)*
-                Ok(())
-            }
+        describe! {
+            $name, $name::DOCS.name, $name::DOCS.lines, true,
+            [$name, None, &[], { $(
+                $part, lines_of(&$name::DOCS, stringify!($part)), true, String::new();
+            )* }]
         }
     };
 }

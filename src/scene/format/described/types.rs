@@ -44,8 +44,12 @@ pub(crate) fn contains(types: &[Type], name: &str) -> bool {
     types.iter().any(|known| known.name == name)
 }
 
-/// `head(field: …, …)` with the required fields.
-pub(crate) fn blank_form(head: &str, fields: &[(&str, bool, String)]) -> String {
+/// `form(field: …, …)` with the required fields; only the name of a form without fields.
+pub(crate) fn blank_form(form: Option<&str>, fields: &[(&str, bool, String)]) -> String {
+    let form = form.unwrap_or_default();
+    if fields.is_empty() {
+        return form.to_owned();
+    }
     let written = joined(
         fields
             .iter()
@@ -53,7 +57,7 @@ pub(crate) fn blank_form(head: &str, fields: &[(&str, bool, String)]) -> String 
             .map(|(name, _, blank)| format!("{name}: {blank}")),
         ", ",
     );
-    format!("{head}({written})")
+    format!("{form}({written})")
 }
 
 /// The value of the shortest text, with all optional fields at their defaults.
