@@ -4,7 +4,10 @@
 //! A remedy is shown as advice only if it helped in a trial. Remedies that need a person are listed as not
 //! tried.
 
-use super::remedy::{Remedy, RemedyKind};
+use super::remedy::{
+    BLOCK, CONSISTENT_GEOMETRY, CONSISTENT_LIMIT, DAMP, LADDER, NEWTON, Remedy, RemedyKind, SEARCH,
+    STRESS_RESIDUAL, TOUCH_AT_START,
+};
 use super::surface_end::ending;
 use stickslip_core::model::{AtCycle, Geometry, InitialGaps, Jumps, ResidualMethod, SearchMode};
 use stickslip_core::{BoundUpdate, Failure, Mode, Model, Singular, State, Strategy};
@@ -91,11 +94,7 @@ fn kinds(state: &State, failure: &Failure) -> Vec<RemedyKind> {
     let parts: &[RemedyKind] = if climbs {
         &[RemedyKind::Part(0.37), RemedyKind::Part(0.1)]
     } else {
-        &[
-            RemedyKind::Strategy(Strategy::Ladder),
-            RemedyKind::Part(0.5),
-            RemedyKind::Part(0.1),
-        ]
+        &[LADDER, RemedyKind::Part(0.5), RemedyKind::Part(0.1)]
     };
     let mut all = Vec::new();
     let mut add = |wanted: bool, kinds: &[RemedyKind]| {
@@ -108,27 +107,27 @@ fn kinds(state: &State, failure: &Failure) -> Vec<RemedyKind> {
     let searches = climbs && settings.search == SearchMode::Off;
     match failure {
         Failure::Cycle(_) => {
-            add(!climbs, &[RemedyKind::Strategy(Strategy::Ladder)]);
-            add(lags, &[RemedyKind::ConsistentLimit]);
-            add(settings.at_cycle != AtCycle::Damp, &[RemedyKind::Damp]);
+            add(!climbs, &[LADDER]);
+            add(lags, &[CONSISTENT_LIMIT]);
+            add(settings.at_cycle != AtCycle::Damp, &[DAMP]);
             add(true, &[RemedyKind::Part(0.5), RemedyKind::Part(0.1)]);
         }
         Failure::MinorLimit { .. } => {
-            add(lags, &[RemedyKind::ConsistentLimit]);
+            add(lags, &[CONSISTENT_LIMIT]);
             add(true, &[RemedyKind::MoreMinors]);
             add(true, parts);
         }
         Failure::MajorCycle(_) => {
-            add(searches, &[RemedyKind::Search]);
-            add(frozen, &[RemedyKind::ConsistentGeometry]);
+            add(searches, &[SEARCH]);
+            add(frozen, &[CONSISTENT_GEOMETRY]);
             add(true, parts);
-            add(true, &[RemedyKind::TouchAtStart]);
+            add(true, &[TOUCH_AT_START]);
         }
         Failure::MajorLimit { .. } => {
-            add(frozen, &[RemedyKind::ConsistentGeometry]);
+            add(frozen, &[CONSISTENT_GEOMETRY]);
             let accumulates = settings.residual == ResidualMethod::Accumulate;
-            add(accumulates, &[RemedyKind::OtherResidual]);
-            add(searches, &[RemedyKind::Search]);
+            add(accumulates, &[STRESS_RESIDUAL]);
+            add(searches, &[SEARCH]);
             add(true, &[RemedyKind::MoreMajors]);
             add(true, parts);
         }
@@ -140,10 +139,10 @@ fn kinds(state: &State, failure: &Failure) -> Vec<RemedyKind> {
                     RemedyKind::Start(Mode::Sliding),
                 ],
             );
-            add(!climbs, &[RemedyKind::Strategy(Strategy::Ladder)]);
+            add(!climbs, &[LADDER]);
         }
         Failure::Singular(Singular::Unexplained) | Failure::Diverged { .. } => {
-            add(searches, &[RemedyKind::Search]);
+            add(searches, &[SEARCH]);
             add(true, parts);
         }
         Failure::LadderEnded { .. } | Failure::NotFound(_) => {
@@ -152,17 +151,13 @@ fn kinds(state: &State, failure: &Failure) -> Vec<RemedyKind> {
                 !matches!(failure, Failure::LadderEnded { scales: true, .. }),
                 parts,
             );
-            let others = [Strategy::Newton, Strategy::Block];
-            add(searches, &[RemedyKind::Search]);
-            add(climbs, &others.map(RemedyKind::Strategy));
+            add(searches, &[SEARCH]);
+            add(climbs, &[NEWTON, BLOCK]);
         }
         Failure::Refused(_) => {
-            add(searches, &[RemedyKind::Search]);
+            add(searches, &[SEARCH]);
             add(true, parts);
-            add(
-                true,
-                &[RemedyKind::TouchAtStart, RemedyKind::ConsistentLimit],
-            );
+            add(true, &[TOUCH_AT_START, CONSISTENT_LIMIT]);
         }
         Failure::BranchJump { .. } => add(
             true,

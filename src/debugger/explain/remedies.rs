@@ -5,7 +5,10 @@
 
 use super::advice::{Advice, advice};
 use super::examination::{Examination, frozen};
-use super::remedy::{Remedy, RemedyInput, RemedyKind};
+use super::remedy::{
+    BLOCK, CONSISTENT_GEOMETRY, CONSISTENT_LIMIT, DAMP, LADDER, NEWTON, Remedy, RemedyInput,
+    RemedyKind, STRESS_RESIDUAL, TOUCH_AT_START,
+};
 use super::restart;
 use super::tested::Dimension;
 use std::cmp::Ordering;
@@ -13,7 +16,7 @@ use std::ops::ControlFlow;
 use stickslip_core::step::drive::drive;
 use stickslip_core::{
     Capabilities, ContactRecord, Event, Failure, Forced, Intervention, JudgedLaw, Mode, Model,
-    Norms, NotFound, Outcome, RunEnd, Solver, State, Status, Stepper, Strategy, Until,
+    Norms, NotFound, Outcome, RunEnd, Solver, State, Status, Stepper, Until,
 };
 use stickslip_platform::clock::Instant;
 use stickslip_scene::Spec;
@@ -102,20 +105,30 @@ impl RemedyTrial {
 }
 
 /// All kinds of remedies, in the order in which they are tried.
-const KINDS: [RemedyKind; 19] = [
-    RemedyKind::Strategy(Strategy::Sliding),
-    RemedyKind::Strategy(Strategy::Least),
-    RemedyKind::Strategy(Strategy::SlidingLeast),
-    RemedyKind::Strategy(Strategy::Block),
-    RemedyKind::Strategy(Strategy::Newton),
-    RemedyKind::Strategy(Strategy::Lemke),
-    RemedyKind::Strategy(Strategy::Ladder),
-    RemedyKind::ConsistentLimit,
-    RemedyKind::ConsistentGeometry,
-    RemedyKind::OtherResidual,
-    RemedyKind::OtherSticking,
-    RemedyKind::TouchAtStart,
-    RemedyKind::Damp,
+const KINDS: [RemedyKind; 21] = [
+    RemedyKind::Set("enter contact as sliding", "settings.strategy", "sliding"),
+    RemedyKind::Set(
+        "one change at a time, least index",
+        "settings.strategy",
+        "least",
+    ),
+    RemedyKind::Set(
+        "enter as sliding, one change at a time",
+        "settings.strategy",
+        "sliding_least",
+    ),
+    BLOCK,
+    NEWTON,
+    RemedyKind::Set("Lemke's pivoting", "settings.strategy", "lemke"),
+    LADDER,
+    CONSISTENT_LIMIT,
+    CONSISTENT_GEOMETRY,
+    RemedyKind::Set("residual accumulate", "settings.residual", "accumulate"),
+    STRESS_RESIDUAL,
+    RemedyKind::Set("sticking increments", "settings.sticking", "increments"),
+    RemedyKind::Set("sticking anchored", "settings.sticking", "anchored"),
+    TOUCH_AT_START,
+    DAMP,
     RemedyKind::Part(0.5),
     RemedyKind::Part(0.37),
     RemedyKind::Part(0.1),

@@ -9,14 +9,11 @@ use super::examination::Examination;
 use super::names;
 use super::strain::{self, MaterialCause};
 use stickslip_core::contact::projection::projection_at;
-use stickslip_core::model::{AtCycle, Geometry, ResidualMethod, Sticking};
 use stickslip_core::step::intervene::Value;
-use stickslip_core::{
-    BoundUpdate, Failure, InitialGaps, Intervention, Jumps, Mode, Model, Parameter, SearchMode,
-    Settings, State, Strategy, Touch,
-};
+use stickslip_core::{Failure, InitialGaps, Intervention, Jumps, Mode, Model, Parameter, State};
+use stickslip_scene::format::paths;
 use stickslip_scene::gaps::{StartGaps, start_gaps, turned};
-use stickslip_scene::{joined, number};
+use stickslip_scene::{Spec, joined, number};
 
 /// Factor by which iteration limits are raised.
 const MORE: u32 = 10;
@@ -26,20 +23,8 @@ const MORE: u32 = 10;
 pub enum RemedyKind {
     /// Start from the consistent state with this number in the census.
     Answer(usize),
-    /// Another strategy.
-    Strategy(Strategy),
-    /// T_max in the matrix (`settings.t_max=consistent`).
-    ConsistentLimit,
-    /// A tangent that includes the change of geometry (`settings.geometry=consistent`).
-    ConsistentGeometry,
-    /// The other residual method.
-    OtherResidual,
-    /// The other reference for sticking (`settings.sticking`).
-    OtherSticking,
-    /// Hold nodes in new contact where they were (`settings.touch=start`).
-    TouchAtStart,
-    /// Solve half the load first after a cycle (`settings.at_cycle=damp`).
-    Damp,
+    /// A setting: label, path and value.
+    Set(&'static str, &'static str, &'static str),
     /// This fraction of the increment.
     Part(f64),
     /// More minor iterations.
@@ -58,13 +43,38 @@ pub enum RemedyKind {
     Reverse(usize),
     /// The surface with this number continued past its ends; tried from the start of the scene.
     PastEnds(usize),
-    /// Search for a way out (`settings.search=auto`).
-    Search,
     /// Another treatment of increments that jump to another branch; tried from the start of the scene.
     Jumps(Jumps),
     /// A material law whose range contains the state of a solid; tried from the start of the scene.
     Law,
 }
+
+/// The strategies that are advised.
+pub(super) const LADDER: RemedyKind =
+    RemedyKind::Set("the ladder of strategies", "settings.strategy", "ladder");
+pub(super) const NEWTON: RemedyKind =
+    RemedyKind::Set("semismooth Newton", "settings.strategy", "newton");
+pub(super) const BLOCK: RemedyKind = RemedyKind::Set(
+    "block changes, least-index fallback",
+    "settings.strategy",
+    "block",
+);
+/// T_max in the matrix.
+pub(super) const CONSISTENT_LIMIT: RemedyKind =
+    RemedyKind::Set("t_max consistent", "settings.t_max", "consistent");
+/// A tangent that includes the change of geometry.
+pub(super) const CONSISTENT_GEOMETRY: RemedyKind =
+    RemedyKind::Set("geometry consistent", "settings.geometry", "consistent");
+/// Residuals from stresses.
+pub(super) const STRESS_RESIDUAL: RemedyKind =
+    RemedyKind::Set("residual stress", "settings.residual", "stress");
+/// Hold nodes in new contact where they were.
+pub(super) const TOUCH_AT_START: RemedyKind =
+    RemedyKind::Set("touch at the start", "settings.touch", "start");
+/// Solve half the load first after a cycle.
+pub(super) const DAMP: RemedyKind = RemedyKind::Set("at_cycle damp", "settings.at_cycle", "damp");
+/// Search for a way out.
+pub(super) const SEARCH: RemedyKind = RemedyKind::Set("search", "settings.search", "auto");
 
 /// What to type to apply a remedy.
 #[derive(Debug, Clone, PartialEq)]
@@ -184,6 +194,16 @@ impl Remedy {
             how,
             first,
         };
+        let set = |label: &str, path: &'static str, value: String| {
+            let settings = state.controls.settings;
+            let mut spec = Spec {
+                settings,
+                ..Spec::default()
+            };
+            paths::set(&mut spec, path, &value).ok()?;
+            let first = vec![Intervention::Settings(spec.settings)];
+            (spec.settings != settings).then(|| remedy(label, RemedyInput::Set(path, value), first))
+        };
         match kind {
             RemedyKind::Answer(_) | RemedyKind::Law | RemedyKind::Tuned => None,
             RemedyKind::Reverse(surface) => {
@@ -251,12 +271,22 @@ impl Remedy {
                 let label = format!("start contacts {}", names::mode(mode));
                 (!first.is_empty()).then(|| remedy(&label, RemedyInput::Listed, first))
             }
-            _ => {
-                let mut settings = state.controls.settings;
-                let (label, path, value) = change(kind, &mut settings)?;
-                let first = vec![Intervention::Settings(settings)];
-                (settings != state.controls.settings)
-                    .then(|| remedy(label, RemedyInput::Set(path, value), first))
+            RemedyKind::Set(label, path, value) => set(label, path, value.to_owned()),
+            RemedyKind::MoreMinors => {
+                let most = state.controls.settings.minors.saturating_mul(MORE);
+                set(
+                    "10 times the minor limit",
+                    "settings.minors",
+                    most.to_string(),
+                )
+            }
+            RemedyKind::MoreMajors => {
+                let most = state.controls.settings.majors.saturating_mul(MORE);
+                set(
+                    "10 times the major limit",
+                    "settings.majors",
+                    most.to_string(),
+                )
             }
         }
     }
@@ -305,96 +335,6 @@ impl Remedy {
 /// What to type for a value that is set from the start of the scene.
 fn restarted(path: &str, value: &str) -> RemedyInput {
     RemedyInput::Restart(vec![(path.to_owned(), value.to_owned())])
-}
-
-/// Changes the settings for a kind; returns label, path and value.
-fn change(
-    kind: RemedyKind,
-    settings: &mut Settings,
-) -> Option<(&'static str, &'static str, String)> {
-    let text = match kind {
-        RemedyKind::Strategy(strategy) => {
-            settings.strategy = strategy;
-            let label = match strategy {
-                Strategy::Ladder => "the ladder of strategies",
-                Strategy::Table2 => "Table 2 as printed",
-                Strategy::Sliding => "enter contact as sliding",
-                Strategy::Least => "one change at a time, least index",
-                Strategy::SlidingLeast => "enter as sliding, one change at a time",
-                Strategy::Block => "block changes, least-index fallback",
-                Strategy::Newton => "semismooth Newton",
-                Strategy::Lemke => "Lemke's pivoting",
-                Strategy::Census => "a census of all assignments",
-                Strategy::Copositive => "pivoting with the friction force in two parts",
-                Strategy::GaussSeidel => "Gauss-Seidel, then a solve with its modes",
-            };
-            (label, "settings.strategy", strategy.name().to_owned())
-        }
-        RemedyKind::ConsistentLimit => {
-            settings.t_max = BoundUpdate::Consistent;
-            ("t_max consistent", "settings.t_max", "consistent".into())
-        }
-        RemedyKind::ConsistentGeometry => {
-            settings.geometry = Geometry::Consistent;
-            let value = "consistent".into();
-            ("geometry consistent", "settings.geometry", value)
-        }
-        RemedyKind::OtherResidual => {
-            let (method, label, value) = match settings.residual {
-                ResidualMethod::Stress => {
-                    let method = ResidualMethod::Accumulate;
-                    (method, "residual accumulate", "accumulate")
-                }
-                ResidualMethod::Accumulate => (ResidualMethod::Stress, "residual stress", "stress"),
-            };
-            settings.residual = method;
-            (label, "settings.residual", value.into())
-        }
-        RemedyKind::OtherSticking => {
-            let (sticking, label, value) = match settings.sticking {
-                Sticking::Anchored => {
-                    let sticking = Sticking::Increments;
-                    (sticking, "sticking increments", "increments")
-                }
-                Sticking::Increments => (Sticking::Anchored, "sticking anchored", "anchored"),
-            };
-            settings.sticking = sticking;
-            (label, "settings.sticking", value.into())
-        }
-        RemedyKind::TouchAtStart => {
-            settings.touch = Touch::Start;
-            ("touch at the start", "settings.touch", "start".into())
-        }
-        RemedyKind::Search => {
-            settings.search = SearchMode::Auto;
-            ("search", "settings.search", "auto".into())
-        }
-        RemedyKind::Damp => {
-            settings.at_cycle = AtCycle::Damp;
-            ("at_cycle damp", "settings.at_cycle", "damp".into())
-        }
-        RemedyKind::MoreMinors => {
-            settings.minors = settings.minors.saturating_mul(MORE);
-            let value = settings.minors.to_string();
-            ("10 times the minor limit", "settings.minors", value)
-        }
-        RemedyKind::MoreMajors => {
-            settings.majors = settings.majors.saturating_mul(MORE);
-            let value = settings.majors.to_string();
-            ("10 times the major limit", "settings.majors", value)
-        }
-        RemedyKind::Answer(_)
-        | RemedyKind::Part(_)
-        | RemedyKind::Tuned
-        | RemedyKind::Start(_)
-        | RemedyKind::Hysteresis
-        | RemedyKind::Gaps(_)
-        | RemedyKind::Reverse(_)
-        | RemedyKind::PastEnds(_)
-        | RemedyKind::Jumps(_)
-        | RemedyKind::Law => return None,
-    };
-    Some(text)
 }
 
 /// Initial modes to restart the increment with: for the nodes on their surface, or else for the closest one.
