@@ -12,11 +12,11 @@ use std::sync::Arc;
 use stickslip_attach::Attached;
 use stickslip_core::model::{AtCycle, AtLimit};
 use stickslip_core::{Failure, RunEnd, Solver, Strategy};
-use stickslip_debugger::ExportError;
+use stickslip_debugger::Refusal;
 use stickslip_debugger::explain::core::core;
 use stickslip_debugger::explain::diagnosis::cycling;
 use stickslip_debugger::explain::report;
-use stickslip_debugger::record::export::{self, NoExport, Origin};
+use stickslip_debugger::record::export::{self, Origin};
 use stickslip_debugger::session::exports;
 use stickslip_platform::files::Output;
 use stickslip_scene::Scene;
@@ -61,30 +61,14 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     put(Some(&args.output), &text, args.force)
 }
 
-/// Why there is no core.
-#[derive(Debug, thiserror::Error)]
-enum NoCore {
-    #[error("the scene converges, so there is no cycle{0}")]
-    Converges(&'static str),
-    #[error("the scene fails, but not in a cycle of minor iterations: {0}")]
-    OtherFailure(String),
-    #[error(
-        "the bodies cannot be condensed to the interface in the cycle, so there is no core to write"
-    )]
-    NotCondensed,
-    #[error("no core found: too many nodes take part in the cycle, or it depends on round-off")]
-    NotFound,
-    #[error(transparent)]
-    NoExport(#[from] NoExport),
-    #[error(transparent)]
-    Reported(#[from] ExportError),
-}
+/// What an error begins with if there is no cycle.
+const CONVERGES: &str = "the scene converges, so there is no cycle";
 
 /// The core of the interface problem that an attached solver reports after its first failure, or why there is none.
-fn of_solver(solver: &mut Attached) -> Result<Result<String, NoCore>, Error> {
+fn of_solver(solver: &mut Attached) -> Result<Result<String, Refusal>, Error> {
     let end = step_to_end(solver, None, &mut |_| ())?;
     if !matches!(end, RunEnd::Failed(_)) {
-        return Ok(Err(NoCore::Converges("")));
+        return Ok(Err(Refusal::new(CONVERGES)));
     }
     let (model, state) = (solver.model().clone(), solver.state().clone());
     let posed = solver.interface_problem(&state).map_err(Error::usage)?;
@@ -96,11 +80,11 @@ fn of_solver(solver: &mut Attached) -> Result<Result<String, NoCore>, Error> {
         load: event.load_factor,
     };
     let text = exports::core_of_reported(&model, &state, &posed, &origin);
-    Ok(text.map_err(NoCore::Reported))
+    Ok(text)
 }
 
 /// The core's file, or why there is none.
-fn text(scene: &Scene) -> Result<String, NoCore> {
+fn text(scene: &Scene) -> Result<String, Refusal> {
     let mut model = scene.model.clone();
     // The solve must stop at the cycle instead of escaping it.
     model.settings.at_cycle = AtCycle::Stop;
@@ -115,11 +99,13 @@ fn text(scene: &Scene) -> Result<String, NoCore> {
         } else {
             ""
         };
-        return Err(NoCore::Converges(hint));
+        return Err(Refusal::new(format_args!("{CONVERGES}{hint}")));
     };
     let Failure::Cycle(cycle) = failure else {
         let words = report::outcome(&scene.model, stepper.event());
-        return Err(NoCore::OtherFailure(words));
+        return Err(Refusal::new(format_args!(
+            "the scene fails, but not in a cycle of minor iterations: {words}"
+        )));
     };
     if scene.model.settings.at_cycle != AtCycle::Stop {
         notify("note: settings.at_cycle was ignored; with it the scene may escape this cycle");
@@ -128,8 +114,16 @@ fn text(scene: &Scene) -> Result<String, NoCore> {
     let problem = stepper
         .interface_problem()
         .and_then(|problem| cycling(problem, &cycle))
-        .ok_or(NoCore::NotCondensed)?;
-    let core = core(&problem).ok_or(NoCore::NotFound)?;
+        .ok_or_else(|| {
+            Refusal::new(
+                "the bodies cannot be condensed to the interface in the cycle, so there is no core to write",
+            )
+        })?;
+    let core = core(&problem).ok_or_else(|| {
+        Refusal::new(
+            "no core found: too many nodes take part in the cycle, or it depends on round-off",
+        )
+    })?;
     let origin = Origin::new(scene, at, load);
-    Ok(export::core(&scene.model, &origin, &cycle, &core)?)
+    export::core(&scene.model, &origin, &cycle, &core)
 }

@@ -19,7 +19,8 @@ use crate::view::{View, context};
 use ratatui::layout::Rect;
 use std::fmt;
 use std::time::Duration;
-use stickslip_debugger::action::{Action, ChartOf, Context, Filter, Keymap, ParseError, Sort, Ui};
+use stickslip_debugger::Refusal;
+use stickslip_debugger::action::{Action, ChartOf, Context, Filter, Keymap, Sort, Ui};
 use stickslip_debugger::explain::facts::Part;
 use stickslip_debugger::{Colours, Command, Tutor};
 use stickslip_scene::shown;
@@ -449,7 +450,7 @@ impl App {
     /// Carries out an action, or shows why it is not possible.
     pub(super) fn attempt(
         &mut self,
-        action: Result<Action, ParseError>,
+        action: Result<Action, Refusal>,
         count: Option<u32>,
         view: Option<&View>,
     ) -> Option<Effect> {

@@ -5,8 +5,11 @@ use crate::view::View;
 use stickslip_debugger::Tutor;
 use stickslip_debugger::action::{Action, HiddenDecisions};
 use stickslip_debugger::recorded::calculix::words::{NO_MODES, READ_ONLY};
+use stickslip_debugger::refusal::Refusal;
 use stickslip_debugger::teach::Guess;
-use stickslip_debugger::teach::refusal::LessonRefusal;
+
+/// Why lesson keys do nothing without a lesson.
+pub(super) const NO_LESSON: &str = "no lesson is open; press L to start one";
 
 /// How far the current lesson page has been read.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -57,9 +60,12 @@ impl Learning {
     }
 
     /// Shows the hint of the lesson's question or task.
-    pub(super) fn hint(&mut self, visible: Option<VisibleLines>) -> Result<String, LessonRefusal> {
+    pub(super) fn hint(&mut self, visible: Option<VisibleLines>) -> Result<String, Refusal> {
         self.check_read(visible)?;
-        let tutor = self.lesson.as_mut().ok_or(LessonRefusal::NoLesson)?;
+        let tutor = self
+            .lesson
+            .as_mut()
+            .ok_or_else(|| Refusal::new(NO_LESSON))?;
         tutor.hint().map(|()| String::new())
     }
 
@@ -128,7 +134,7 @@ impl Learning {
         action: &Action,
         view: &View,
         visible: Option<VisibleLines>,
-    ) -> Result<bool, LessonRefusal> {
+    ) -> Result<bool, Refusal> {
         if self.guess.is_none()
             && self
                 .lesson
@@ -214,9 +220,11 @@ impl Learning {
     }
 
     /// Rejects actions that continue the lesson until its text has been shown.
-    pub(super) fn check_read(&self, visible: Option<VisibleLines>) -> Result<(), LessonRefusal> {
+    pub(super) fn check_read(&self, visible: Option<VisibleLines>) -> Result<(), Refusal> {
         if self.is_unread(visible) {
-            Err(LessonRefusal::Unread)
+            Err(Refusal::new(
+                "the lesson text continues; press Space for the next page",
+            ))
         } else {
             Ok(())
         }

@@ -2,13 +2,14 @@
 
 use crate::app::{App, Effect, Overlay};
 use crate::layout::Pane;
+use crate::learning::NO_LESSON;
 use crate::learning::VisibleLines;
 use crate::panes::lesson;
 use crate::screen;
 use crate::view::View;
 use stickslip_debugger::Tutor;
 use stickslip_debugger::action::HiddenDecisions;
-use stickslip_debugger::teach::refusal::LessonRefusal;
+use stickslip_debugger::refusal::Refusal;
 
 impl App {
     /// Shows the next part of the lesson's text, or continues if all of it has been shown: with the next step, or after the last one
@@ -36,7 +37,7 @@ impl App {
         }
         let continued = match (&mut self.learning.lesson, view) {
             (Some(tutor), Some(view)) => tutor.on(view.cursor, view.frame()),
-            _ => Err(LessonRefusal::NoLesson),
+            _ => Err(Refusal::new(NO_LESSON)),
         };
         self.report(continued.map(|()| String::new()));
         None
@@ -46,7 +47,7 @@ impl App {
     pub(super) fn reread(&mut self) {
         match &self.learning.lesson {
             Some(_) => self.learning.reading.top = 0,
-            None => self.complain(LessonRefusal::NoLesson),
+            None => self.complain(NO_LESSON),
         }
     }
 

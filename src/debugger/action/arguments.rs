@@ -5,9 +5,9 @@ use super::meaning::{
     Action, ChartOf, Colours, CopyTarget, Filter, HiddenDecisions, Question, Sort, Ui,
 };
 use super::parameters::{parameter, set_paths};
-use super::parse_error::ParseError;
 use super::table::{ActionEntry, Verb};
 use crate::history::breakpoints::Condition;
+use crate::refusal::{Refusal, refusal};
 use crate::{BranchTarget, Command, ExportScope, Watch, WatchQuantity};
 use std::path::PathBuf;
 use stickslip_core::Mode;
@@ -19,23 +19,23 @@ use stickslip_study::Vary;
 const LONGEST_REST: usize = 1000;
 
 /// Parses a line: the name of an action and its arguments.
-pub fn parse(line: &str, context: &Context) -> Result<Action, ParseError> {
+pub fn parse(line: &str, context: &Context) -> Result<Action, Refusal> {
     let line = line.trim();
     let (word, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
     if word.is_empty() {
-        return Err(ParseError::Nothing);
+        return Err(refusal!("type the name of an action; ? lists all actions"));
     }
     context.entry(word)?.act(rest.trim(), context)
 }
 
 impl ActionEntry {
     /// The action of this entry with these arguments.
-    pub fn act(&self, rest: &str, context: &Context) -> Result<Action, ParseError> {
+    pub fn act(&self, rest: &str, context: &Context) -> Result<Action, Refusal> {
         if rest.chars().count() > LONGEST_REST {
-            return Err(ParseError::LongRest {
-                name: self.name,
-                most: LONGEST_REST,
-            });
+            return Err(refusal!(
+                "the arguments of {name} are longer than {LONGEST_REST} characters",
+                name = self.name
+            ));
         }
         let words: Vec<&str> = rest.split_whitespace().collect();
         if words.len() > self.most_words() {
@@ -72,7 +72,7 @@ impl ActionEntry {
                 [word] => Command::Goto {
                     step: word
                         .parse()
-                        .map_err(|_| ParseError::no_value(word, "step number", self.usage()))?,
+                        .map_err(|_| Refusal::no_value(word, "step number", self.usage()))?,
                 },
                 _ => return Err(self.misused()),
             },
@@ -152,7 +152,7 @@ impl ActionEntry {
                 return match words[..] {
                     [] => ui(Ui::Magnify(None)),
                     [word] => match number(word) {
-                        None => Err(ParseError::no_value(
+                        None => Err(Refusal::no_value(
                             word,
                             "factor from 1 to 1e9",
                             self.usage(),
@@ -183,48 +183,44 @@ impl ActionEntry {
     }
 
     /// The error for too few or too many words.
-    fn misused(&self) -> ParseError {
-        ParseError::Usage(self.usage())
+    fn misused(&self) -> Refusal {
+        Refusal::new(self.usage())
     }
 
-    fn count(&self, words: &[&str]) -> Result<u32, ParseError> {
+    fn count(&self, words: &[&str]) -> Result<u32, Refusal> {
         let Some(word) = words.first() else {
             return Ok(1);
         };
         match word.parse() {
             Ok(count) if count > 0 => Ok(count),
-            _ => Err(ParseError::no_value(word, "count", self.usage())),
+            _ => Err(Refusal::no_value(word, "count", self.usage())),
         }
     }
 
     /// An entry of a list, counted from 0.
-    fn number(&self, words: &[&str]) -> Result<usize, ParseError> {
+    fn number(&self, words: &[&str]) -> Result<usize, Refusal> {
         let [word] = words[..] else {
             return Err(self.misused());
         };
         match word.parse::<usize>() {
             Ok(number) if number > 0 => Ok(number - 1),
-            _ => Err(ParseError::no_value(word, "list entry", self.usage())),
+            _ => Err(Refusal::no_value(word, "list entry", self.usage())),
         }
     }
 
     /// The number of a breakpoint; `None` for all.
-    fn number_or_all(&self, words: &[&str]) -> Result<Option<u32>, ParseError> {
+    fn number_or_all(&self, words: &[&str]) -> Result<Option<u32>, Refusal> {
         match words[..] {
             ["all"] => Ok(None),
             [word] => match word.parse() {
                 Ok(number) => Ok(Some(number)),
-                Err(_) => Err(ParseError::no_value(
-                    word,
-                    "breakpoint number",
-                    self.usage(),
-                )),
+                Err(_) => Err(Refusal::no_value(word, "breakpoint number", self.usage())),
             },
             _ => Err(self.misused()),
         }
     }
 
-    fn watch(&self, words: &[&str], context: &Context) -> Result<Watch, ParseError> {
+    fn watch(&self, words: &[&str], context: &Context) -> Result<Watch, Refusal> {
         let (what, name) = match words.iter().position(|word| *word == "as") {
             Some(at) if at + 1 == words.len() => return Err(self.misused()),
             Some(at) => (&words[..at], Some(words[at + 1..].join(" "))),
@@ -236,7 +232,7 @@ impl ActionEntry {
         let model = model(context)?;
         let quantity = WatchQuantity::from_word(word).ok_or_else(|| {
             let all = WatchQuantity::NAMES.join(", ");
-            ParseError::NotWatched(word.to_string(), all)
+            refusal!("cannot watch '{word}'; quantities: {all}")
         })?;
         let slave = match (quantity.is_nodal(), rest) {
             (true, []) => chosen(None, context)?,
@@ -251,14 +247,14 @@ impl ActionEntry {
         })
     }
 
-    fn force(&self, words: &[&str], hold: bool, context: &Context) -> Result<Action, ParseError> {
+    fn force(&self, words: &[&str], hold: bool, context: &Context) -> Result<Action, Refusal> {
         let (node, word) = match words[..] {
             [] if !hold => return Ok(Action::Ui(Ui::Ask(Question::Mode))),
             [word] => (None, word),
             [node, word] => (Some(node), word),
             _ => return Err(self.misused()),
         };
-        let mode = mode(word).ok_or_else(|| ParseError::no_mode(word))?;
+        let mode = mode(word).ok_or_else(|| Refusal::no_mode(word))?;
         Ok(Action::Session(Command::Force {
             slave: chosen(node, context)?,
             mode,
@@ -266,7 +262,7 @@ impl ActionEntry {
         }))
     }
 
-    fn set(&self, rest: &str, words: &[&str], context: &Context) -> Result<Command, ParseError> {
+    fn set(&self, rest: &str, words: &[&str], context: &Context) -> Result<Command, Refusal> {
         // Names and texts of attached solvers may contain spaces.
         if let Some((known, value)) = parameter(rest, context)
             && !value.is_empty()
@@ -278,10 +274,7 @@ impl ActionEntry {
         }
         let [path, value] = words[..] else {
             let paths = set_paths(context).join(", ");
-            return Err(ParseError::Usage(format!(
-                "{}; paths: {paths}",
-                self.usage()
-            )));
+            return Err(refusal!("{}; paths: {paths}", self.usage()));
         };
         Ok(Command::Set {
             path: path.into(),
@@ -296,11 +289,11 @@ pub(super) const CONDITIONS: [&str; 8] = [
 ];
 
 /// Parses a breakpoint condition. A missing node, or `any`, means any node.
-fn condition(words: &[&str], context: &Context) -> Result<Condition, ParseError> {
+fn condition(words: &[&str], context: &Context) -> Result<Condition, Refusal> {
     let (word, rest) = words
         .split_first()
         .map_or(("", words), |(w, rest)| (*w, rest));
-    let usage = |how: &str| ParseError::Usage(format!("usage: break {word} {how}"));
+    let usage = |how: &str| refusal!("usage: break {word} {how}");
     match (word, rest) {
         ("mode" | "leaves", _) if rest.len() <= 2 => {
             let (node, mode) = node_and_mode(rest, context)?;
@@ -317,7 +310,7 @@ fn condition(words: &[&str], context: &Context) -> Result<Condition, ParseError>
                 .parse::<f64>()
                 .ok()
                 .filter(|below| below.is_finite())
-                .ok_or_else(|| ParseError::no_value(value, "margin", "expected a number".into()))?;
+                .ok_or_else(|| Refusal::no_value(value, "margin", "expected a number"))?;
             let node = any_or_exact(rest.get(rest.len().wrapping_sub(2)), context)?;
             Ok(Condition::Margin { node, below })
         }
@@ -332,7 +325,10 @@ fn condition(words: &[&str], context: &Context) -> Result<Condition, ParseError>
         ("cycle" | "residual" | "failure", _) => Err(usage("")),
         ("at", [place]) => Ok(Condition::At(place.parse()?)),
         ("at", _) => Err(usage("INC[.MAJOR[.MINOR]]")),
-        _ => Err(ParseError::NoCondition(word.into(), CONDITIONS.join(", "))),
+        _ => Err(refusal!(
+            "unknown condition '{word}'; conditions: {}",
+            CONDITIONS.join(", ")
+        )),
     }
 }
 
@@ -340,7 +336,7 @@ fn condition(words: &[&str], context: &Context) -> Result<Condition, ParseError>
 fn node_and_mode(
     words: &[&str],
     context: &Context,
-) -> Result<(Option<usize>, Option<Mode>), ParseError> {
+) -> Result<(Option<usize>, Option<Mode>), Refusal> {
     match words {
         [] => Ok((None, None)),
         [word] => match mode(word) {
@@ -348,7 +344,7 @@ fn node_and_mode(
             None => Ok((any_or_exact(Some(word), context)?, None)),
         },
         [node, word, ..] => {
-            let mode = mode(word).ok_or_else(|| ParseError::no_mode(word))?;
+            let mode = mode(word).ok_or_else(|| Refusal::no_mode(word))?;
             Ok((any_or_exact(Some(node), context)?, Some(mode)))
         }
     }
@@ -370,18 +366,19 @@ pub fn mode(word: &str) -> Option<Mode> {
 }
 
 /// Parses an increment size.
-pub fn increment(word: &str) -> Result<f64, ParseError> {
+pub fn increment(word: &str) -> Result<f64, Refusal> {
     match word.trim().parse::<f64>() {
         Ok(size) if size.is_finite() && size > 0.0 => Ok(size),
-        _ => {
-            let instead = "expected a positive number such as 0.005".into();
-            Err(ParseError::no_value(word.trim(), "increment", instead))
-        }
+        _ => Err(Refusal::no_value(
+            word.trim(),
+            "increment",
+            "expected a positive number such as 0.005",
+        )),
     }
 }
 
 /// Parses a file, or settings with their values; nothing means the scene's own chart.
-fn chart_of(rest: &str, words: &[&str]) -> Result<ChartOf, ParseError> {
+fn chart_of(rest: &str, words: &[&str]) -> Result<ChartOf, Refusal> {
     if rest.is_empty() {
         return Ok(ChartOf::Scene);
     }
@@ -389,7 +386,7 @@ fn chart_of(rest: &str, words: &[&str]) -> Result<ChartOf, ParseError> {
         return Ok(ChartOf::File(rest.into()));
     }
     let over: Result<_, _> = words.iter().map(|word| Vary::parse(word)).collect();
-    over.map(ChartOf::Settings).map_err(ParseError::NoChart)
+    over.map(ChartOf::Settings).map_err(Refusal::new)
 }
 
 /// The choice that a word is a prefix of; `None` without a word.
@@ -397,7 +394,7 @@ fn one_of<T: Copy>(
     words: &[&str],
     all: impl IntoIterator<Item = T>,
     spell: fn(T) -> &'static str,
-) -> Result<Option<T>, ParseError> {
+) -> Result<Option<T>, Refusal> {
     let Some(word) = words.first() else {
         return Ok(None);
     };
@@ -408,25 +405,21 @@ fn one_of<T: Copy>(
         .copied()
         .map(Some)
         .ok_or_else(|| {
-            let (word, all) = (
-                word.to_string(),
-                all.iter().map(|&one| spell(one)).collect(),
-            );
-            ParseError::NoneOf { word, all }
+            let all = joined(all.iter().map(|&one| spell(one)), ", ");
+            refusal!("unknown word '{word}'; expected one of: {all}")
         })
 }
 
 /// The number of the monitor with this name.
-fn monitor(name: &str, context: &Context) -> Result<usize, ParseError> {
+fn monitor(name: &str, context: &Context) -> Result<usize, Refusal> {
     let monitors = &model(context)?.monitors;
     let found = monitors.iter().position(|monitor| monitor.name == name);
     found.ok_or_else(|| {
         if monitors.is_empty() {
-            ParseError::NoMonitors
+            refusal!("this scene has no monitors")
         } else {
             let names = joined(monitors.iter().map(|m| &m.name), ", ");
-            let (name, monitors) = (name.to_string(), names);
-            ParseError::NoMonitor { name, monitors }
+            refusal!("unknown monitor '{name}'; monitors: {names}")
         }
     })
 }

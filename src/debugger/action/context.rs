@@ -1,9 +1,9 @@
 //! The context in which arguments of actions are read, and the lookup of slave nodes by name.
 
 use super::keymap::Keymap;
-use super::parse_error::ParseError;
 use super::table::{ActionEntry, begun, by_name};
 use crate::Tree;
+use crate::refusal::{Refusal, refusal};
 use stickslip_core::interface::census::MOST;
 use stickslip_core::{Capabilities, Model, State};
 use stickslip_scene::{EmbeddedFile, Scene, few};
@@ -33,7 +33,7 @@ pub struct Context<'a> {
 
 impl Context<'_> {
     /// Finds an entry by name, one-letter key, or unique prefix.
-    pub fn entry(&self, word: &str) -> Result<&'static ActionEntry, ParseError> {
+    pub fn entry(&self, word: &str) -> Result<&'static ActionEntry, Refusal> {
         let key = (word.chars().count() == 1).then_some(word);
         match (self.keymap, key) {
             (Some(keymap), Some(key)) => match keymap.by_key(key) {
@@ -46,21 +46,21 @@ impl Context<'_> {
 }
 
 /// The named slave node, or the selected one without a name.
-pub(super) fn chosen(word: Option<&str>, context: &Context) -> Result<usize, ParseError> {
+pub(super) fn chosen(word: Option<&str>, context: &Context) -> Result<usize, Refusal> {
     match word {
         Some(word) => exact(word, context),
         None if context.selected < model(context)?.contacts.len() => Ok(context.selected),
-        None => Err(ParseError::NoSlaves),
+        None => Err(refusal!("this scene has no slave nodes")),
     }
 }
 
 /// The model of the open scene.
-pub(super) fn model<'a>(context: &Context<'a>) -> Result<&'a Model, ParseError> {
-    context.model.ok_or(ParseError::NoScene)
+pub(super) fn model<'a>(context: &Context<'a>) -> Result<&'a Model, Refusal> {
+    context.model.ok_or_else(|| refusal!("open a scene first"))
 }
 
 /// The slave node with exactly this name. No guessing, because the action changes the solve.
-pub fn exact(word: &str, context: &Context) -> Result<usize, ParseError> {
+pub fn exact(word: &str, context: &Context) -> Result<usize, Refusal> {
     let model = model(context)?;
     let alias = context.scene.and_then(|scene| scene.node(word).ok());
     let node = model
@@ -76,11 +76,11 @@ pub fn exact(word: &str, context: &Context) -> Result<usize, ParseError> {
     {
         return Ok(slave);
     }
-    let (word, slaves) = (word.to_string(), some_names(model));
+    let slaves = some_names(model);
     Err(if node.is_some() {
-        ParseError::NoSlave { word, slaves }
+        refusal!("{word} is not a slave node; slave nodes: {slaves}")
     } else {
-        ParseError::NoNode { word, slaves }
+        refusal!("unknown node '{word}'; slave nodes: {slaves}")
     })
 }
 
@@ -101,7 +101,7 @@ fn respelled(word: &str, model: &Model) -> Option<usize> {
 
 /// Slave nodes separated by spaces or commas, in ascending order without duplicates: by name or, if no node has
 /// that name, by index in the scene's list, from 1.
-pub(super) fn several(words: &[&str], context: &Context) -> Result<Vec<usize>, ParseError> {
+pub(super) fn several(words: &[&str], context: &Context) -> Result<Vec<usize>, Refusal> {
     let words = words.iter().flat_map(|word| word.split(','));
     let mut nodes = Vec::new();
     for word in words.filter(|word| !word.is_empty()) {
@@ -119,12 +119,14 @@ pub(super) fn several(words: &[&str], context: &Context) -> Result<Vec<usize>, P
     nodes.sort_unstable();
     match nodes.len() {
         0..=MOST => Ok(nodes),
-        n => Err(ParseError::ManyNodes(n)),
+        n => Err(refusal!(
+            "too many nodes for a census: {n}; the limit is {MOST}"
+        )),
     }
 }
 
 /// The next slave node after the selected one whose name equals or else contains the word.
-pub(super) fn find(word: &str, context: &Context) -> Result<usize, ParseError> {
+pub(super) fn find(word: &str, context: &Context) -> Result<usize, Refusal> {
     if let Ok(slave) = exact(word, context) {
         return Ok(slave);
     }
@@ -133,9 +135,11 @@ pub(super) fn find(word: &str, context: &Context) -> Result<usize, ParseError> {
     (1..=count)
         .map(|step| (context.selected + step) % count)
         .find(|slave| model.nodes[model.contacts[*slave].node].name.contains(word))
-        .ok_or_else(|| ParseError::NotFound {
-            word: word.to_string(),
-            slaves: some_names(model),
+        .ok_or_else(|| {
+            refusal!(
+                "no slave node name contains '{word}'; slave nodes: {}",
+                some_names(model)
+            )
         })
 }
 
@@ -155,7 +159,7 @@ fn some_names(model: &Model) -> String {
 pub(super) fn any_or_exact(
     word: Option<&&str>,
     context: &Context,
-) -> Result<Option<usize>, ParseError> {
+) -> Result<Option<usize>, Refusal> {
     match word {
         None | Some(&"any") => Ok(None),
         Some(word) => exact(word, context).map(Some),

@@ -9,8 +9,7 @@
 //! - [`keymap`]: the key bindings; [`config`]: the user's configuration; `turns`: which actions wait for the
 //!   solver.
 //! - `offered`: which actions the current solver supports; `parameters`: what `set` changes in an attached one.
-//! - [`arguments`]: parsing of lines; [`complete`](mod@complete): completion, with `paths` for files;
-//!   [`parse_error`]: the errors.
+//! - [`arguments`]: parsing of lines; [`complete`](mod@complete): completion, with `paths` for files.
 
 pub mod arguments;
 pub mod complete;
@@ -21,7 +20,6 @@ pub mod keymap;
 pub mod meaning;
 mod offered;
 mod parameters;
-pub mod parse_error;
 mod paths;
 pub mod table;
 #[cfg(test)]
@@ -35,5 +33,4 @@ pub use meaning::{
     Action, ChartOf, Colours, CopyTarget, Filter, HiddenDecisions, Page, Question, Sort, Step, Ui,
 };
 pub use parameters::{parameter, present};
-pub use parse_error::ParseError;
 pub use table::{ACTIONS, ActionEntry, Group, by_key, by_name, markdown};

@@ -3,7 +3,7 @@
 //! Keys are plain strings here (`"s"`, `"F10"`, `"Ctrl-c"`), independent of any terminal library.
 
 use super::meaning::{Page, Step, Ui};
-use super::parse_error::ParseError;
+use crate::refusal::{Refusal, refusal};
 use crate::{BranchTarget, Command, ExportScope, Unit};
 use stickslip_scene::joined;
 
@@ -235,9 +235,11 @@ pub fn by_key(key: &str) -> Option<&'static ActionEntry> {
 const LONGEST_NAME: usize = 40;
 
 /// Finds an entry by name, one-letter key, or unique prefix.
-pub fn by_name(word: &str) -> Result<&'static ActionEntry, ParseError> {
+pub fn by_name(word: &str) -> Result<&'static ActionEntry, Refusal> {
     if word.chars().count() > LONGEST_NAME {
-        return Err(ParseError::LongName);
+        return Err(refusal!(
+            "unknown action (name too long); ? lists all actions"
+        ));
     }
     if let Some(entry) = ACTIONS.iter().find(|entry| entry.name == word) {
         return Ok(entry);
@@ -251,18 +253,17 @@ pub fn by_name(word: &str) -> Result<&'static ActionEntry, ParseError> {
 }
 
 /// The only entry whose name begins with a word.
-pub(super) fn begun(word: &str) -> Result<&'static ActionEntry, ParseError> {
+pub(super) fn begun(word: &str) -> Result<&'static ActionEntry, Refusal> {
     let found: Vec<_> = ACTIONS
         .iter()
         .filter(|entry| begins(entry.name, word))
         .collect();
     match found[..] {
         [entry] => Ok(entry),
-        [] => Err(ParseError::NoAction(word.into())),
+        [] => Err(refusal!("unknown action '{word}'; ? lists all actions")),
         _ => {
-            let names = found.iter().map(|entry| entry.name).collect();
-            let word = word.into();
-            Err(ParseError::Ambiguous { word, names })
+            let names = joined(found.iter().map(|entry| entry.name), ", ");
+            Err(refusal!("'{word}' is ambiguous: {names}"))
         }
     }
 }

@@ -7,6 +7,7 @@ use super::facts::{Fact, Part};
 use super::names;
 use super::proven;
 use super::step_size_probe::smaller;
+use crate::refusal::Refusal;
 use stickslip_core::interface::census::{BUDGET, Census, MOST_SEARCHED, search};
 use stickslip_core::interface::uniqueness::uniqueness;
 use stickslip_core::step::intervene::Start;
@@ -18,17 +19,6 @@ use stickslip_scene::joined;
 pub const DONE: &str = "The history is complete, so there is no next problem.";
 /// Shown if there is no condensed problem.
 pub const NOT_CONDENSED: &str = "The bodies cannot be condensed to the interface here, so there is no small problem to examine.";
-
-/// Why it is unknown whether the minor iterations cycle.
-#[derive(Debug, thiserror::Error)]
-pub enum NotExamined {
-    /// There is no interface problem, because the solver does not condense.
-    #[error("{NOT_CONDENSED}")]
-    NotCondensed,
-    /// Too many nodes; the text contains their number.
-    #[error("{0}")]
-    TooMany(String),
-}
 
 /// Result of an examination.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -227,7 +217,7 @@ pub fn going_round(
     stepper: &mut Stepper,
     state: &State,
     problem: &InterfaceProblem,
-) -> Result<Option<(InterfaceProblem, Cycle)>, NotExamined> {
+) -> Result<Option<(InterfaceProblem, Cycle)>, Refusal> {
     let by_slave = |cycle: Cycle| Cycle {
         members: cycle
             .members
@@ -248,10 +238,10 @@ pub fn going_round(
     };
     let problem = stepper
         .interface_problem()
-        .ok_or(NotExamined::NotCondensed)?;
+        .ok_or_else(|| Refusal::new(NOT_CONDENSED))?;
     match cycling(problem, &cycle) {
         Some(problem) => Ok(Some((problem, cycle))),
-        None => Err(NotExamined::TooMany(too_many(&cycle))),
+        None => Err(Refusal::new(too_many(&cycle))),
     }
 }
 

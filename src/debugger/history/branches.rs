@@ -1,6 +1,7 @@
 //! Branches: their names, their cost, and where they accepted increments.
 
 use crate::explain::names;
+use crate::refusal::{Refusal, refusal};
 use crate::{Strip, Tree};
 use stickslip_core::{Intervention, Model};
 use stickslip_scene::joined;
@@ -18,17 +19,6 @@ pub struct Cost {
     pub seconds: f64,
 }
 
-/// Why a word does not name a branch.
-#[derive(Debug, thiserror::Error)]
-pub enum NoBranch {
-    /// No branch has this name; a list of the branches.
-    #[error("branch '{0}' does not exist; branches: {1}")]
-    Unknown(String, String),
-    /// The labels of several branches begin with this; a list of them.
-    #[error("branch '{0}' is ambiguous: {1}")]
-    Ambiguous(String, String),
-}
-
 /// The name of a branch: `b2: beam.5 sliding`.
 pub fn name(tree: &Tree, branch: usize) -> String {
     let label = tree
@@ -41,7 +31,7 @@ pub fn name(tree: &Tree, branch: usize) -> String {
 /// Finds a branch by number (`b2`), label, whole name, or a unique prefix of its label.
 ///
 /// # Errors If none or several match; the message lists the branches.
-pub fn find(tree: &Tree, word: &str) -> Result<usize, NoBranch> {
+pub fn find(tree: &Tree, word: &str) -> Result<usize, Refusal> {
     let all = 0..tree.branches().len();
     let label = |b: usize| tree.branches()[b].label.as_str();
     let exact =
@@ -58,11 +48,11 @@ pub fn find(tree: &Tree, word: &str) -> Result<usize, NoBranch> {
         [found] => Ok(found),
         [] => {
             let all = joined(all.map(name), ", ");
-            Err(NoBranch::Unknown(word.into(), all))
+            Err(refusal!("branch '{word}' does not exist; branches: {all}"))
         }
         _ => {
             let begun = joined(begun.into_iter().map(name), ", ");
-            Err(NoBranch::Ambiguous(word.into(), begun))
+            Err(refusal!("branch '{word}' is ambiguous: {begun}"))
         }
     }
 }

@@ -4,6 +4,7 @@
 //! discarded, so running backward finds exactly the points where running forward stopped, without solving.
 
 use crate::explain::names;
+use crate::refusal::{Refusal, refusal};
 use crate::{PointKind, Strip};
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -58,16 +59,12 @@ pub struct RunPlace {
     pub minor: u32,
 }
 
-/// A word that is not a position in a run.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("invalid position '{0}'; expected INC[.MAJOR[.MINOR]]")]
-pub struct NoPlace(String);
-
 impl FromStr for RunPlace {
-    type Err = NoPlace;
+    type Err = Refusal;
 
-    fn from_str(text: &str) -> Result<RunPlace, NoPlace> {
-        let [increment, major, minor] = parts(text).ok_or_else(|| NoPlace(text.into()))?;
+    fn from_str(text: &str) -> Result<RunPlace, Refusal> {
+        let [increment, major, minor] = parts(text)
+            .ok_or_else(|| refusal!("invalid position '{text}'; expected INC[.MAJOR[.MINOR]]"))?;
         Ok(RunPlace {
             increment: increment.unwrap_or(1),
             major: major.unwrap_or(1),
@@ -111,16 +108,6 @@ pub struct Breakpoints {
     last: u32,
 }
 
-/// The breakpoint does not exist.
-#[derive(Debug, thiserror::Error)]
-#[error("there is no breakpoint {id}; {listed}")]
-pub struct NoBreakpoint {
-    /// Its number.
-    pub id: u32,
-    /// Existing breakpoints, in words.
-    pub listed: String,
-}
-
 impl Breakpoints {
     /// All breakpoints, oldest first.
     pub fn all(&self) -> &[Breakpoint] {
@@ -141,11 +128,7 @@ impl Breakpoints {
     }
 
     /// Deletes one breakpoint, or all, and lists the others.
-    pub(crate) fn delete(
-        &mut self,
-        id: Option<u32>,
-        model: &Model,
-    ) -> Result<String, NoBreakpoint> {
+    pub(crate) fn delete(&mut self, id: Option<u32>, model: &Model) -> Result<String, Refusal> {
         self.check(id, model)?;
         self.all.retain(|b| id.is_some_and(|id| b.id != id));
         Ok(self.describe(model))
@@ -157,7 +140,7 @@ impl Breakpoints {
         id: Option<u32>,
         on: bool,
         model: &Model,
-    ) -> Result<String, NoBreakpoint> {
+    ) -> Result<String, Refusal> {
         self.check(id, model)?;
         self.all
             .iter_mut()
@@ -166,12 +149,12 @@ impl Breakpoints {
         Ok(self.describe(model))
     }
 
-    fn check(&self, id: Option<u32>, model: &Model) -> Result<(), NoBreakpoint> {
+    fn check(&self, id: Option<u32>, model: &Model) -> Result<(), Refusal> {
         match id.filter(|id| self.all.iter().all(|b| b.id != *id)) {
-            Some(id) => Err(NoBreakpoint {
-                id,
-                listed: self.describe(model),
-            }),
+            Some(id) => Err(refusal!(
+                "there is no breakpoint {id}; {}",
+                self.describe(model)
+            )),
             None => Ok(()),
         }
     }

@@ -2,6 +2,7 @@
 
 use crate::Frame;
 use crate::explain::names;
+use crate::refusal::{Refusal, refusal};
 use serde::{Deserialize, Serialize};
 use stickslip_core::Model;
 
@@ -87,25 +88,14 @@ impl Watch {
 #[derive(Debug, Default)]
 pub struct Watches(Vec<Watch>);
 
-/// Why a watch cannot be added or removed.
-#[derive(Debug, thiserror::Error)]
-pub enum WatchError {
-    /// The name is taken.
-    #[error("watch '{0}' already exists; :unwatch removes it")]
-    Exists(String),
-    /// There are no watches.
-    #[error("there are no watches; :watch adds one")]
-    Empty,
-    /// The watch does not exist: its name, and the existing ones.
-    #[error("watch '{0}' does not exist; watches: {1}")]
-    Unknown(String, String),
-}
-
 impl Watches {
     /// Adds a watch.
-    pub(crate) fn add(&mut self, watch: Watch) -> Result<String, WatchError> {
+    pub(crate) fn add(&mut self, watch: Watch) -> Result<String, Refusal> {
         if self.0.iter().any(|other| other.name == watch.name) {
-            return Err(WatchError::Exists(watch.name));
+            return Err(refusal!(
+                "watch '{}' already exists; :unwatch removes it",
+                watch.name
+            ));
         }
         let reply = format!("watching {}", watch.name);
         self.0.push(watch);
@@ -113,13 +103,16 @@ impl Watches {
     }
 
     /// Removes the watch of this name.
-    pub(crate) fn remove(&mut self, name: &str) -> Result<String, WatchError> {
+    pub(crate) fn remove(&mut self, name: &str) -> Result<String, Refusal> {
         let names: Vec<&str> = self.0.iter().map(|watch| watch.name.as_str()).collect();
         if names.is_empty() {
-            return Err(WatchError::Empty);
+            return Err(refusal!("there are no watches; :watch adds one"));
         }
         if !names.contains(&name) {
-            return Err(WatchError::Unknown(name.into(), names.join(", ")));
+            return Err(refusal!(
+                "watch '{name}' does not exist; watches: {}",
+                names.join(", ")
+            ));
         }
         self.0.retain(|watch| watch.name != name);
         Ok(format!("stopped watching {name}"))

@@ -30,7 +30,8 @@ use crate::explain::page::page;
 use crate::explain::remedies;
 use crate::explain::reported_pushes;
 use crate::memo::Memo;
-use crate::{DiagnosisPage, ExportError, NodePush, RemedyTrial};
+use crate::refusal::Refusal;
+use crate::{DiagnosisPage, NodePush, RemedyTrial};
 use std::collections::HashMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -100,7 +101,7 @@ pub struct Background {
     pub(super) worst: Memo<Vec<f64>, Option<PointDeformation>>,
     /// By position: the requested nodes, and the result.
     examinations: HashMap<LinePlace, (Vec<usize>, Option<DiagnosisPage>)>,
-    exported: Option<Result<String, ExportError>>,
+    exported: Option<Result<String, Refusal>>,
     tried: Option<RemedyTrials>,
     trying: bool,
     /// Examinations running or queued.
@@ -296,7 +297,7 @@ impl Background {
     }
 
     /// Result of the latest export; returned once.
-    pub fn exported(&mut self) -> Option<Result<String, ExportError>> {
+    pub fn exported(&mut self) -> Option<Result<String, Refusal>> {
         self.exported.take()
     }
 
@@ -478,7 +479,7 @@ impl Helper {
             BackgroundRequest::Export(ask) => {
                 let done = if self.spec.is_none() && is_of_problem(&ask) {
                     self.interface_problem(&ask.state)
-                        .map_err(ExportError::from)
+                        .map_err(Refusal::from)
                         .and_then(|posed| write_posed(&self.model, &posed, &ask))
                 } else {
                     write(self.solver().0, &ask)

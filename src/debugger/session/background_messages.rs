@@ -3,7 +3,8 @@
 use super::exports::Export;
 use crate::explain::influence::PushPath;
 use crate::explain::reported_pushes::Iterations;
-use crate::{DiagnosisPage, ExportError, NodePush, RemedyTrial, ReportedIterations};
+use crate::refusal::Refusal;
+use crate::{DiagnosisPage, NodePush, RemedyTrial, ReportedIterations};
 use std::sync::Arc;
 use stickslip_core::{PointDeformation, State};
 
@@ -60,5 +61,5 @@ pub(super) enum BackgroundReply {
     Done {
         stopped: bool,
     },
-    Exported(Result<String, ExportError>),
+    Exported(Result<String, Refusal>),
 }

@@ -2,10 +2,10 @@
 
 use super::current_scene::CurrentScene;
 use super::machine::{Session, Task};
-use super::refusal::Refusal;
 use super::worker::Steps;
 use crate::explain::report;
 use crate::history::branches;
+use crate::refusal::Refusal;
 use stickslip_core::{Intervention, State};
 
 impl Session {
@@ -16,14 +16,14 @@ impl Session {
         setting: Option<(&str, &str)>,
     ) -> Result<String, Refusal> {
         let offers = self.connection.capabilities();
-        offers.check(&intervention).map_err(Refusal::Intervention)?;
+        offers.check(&intervention).map_err(Refusal::new)?;
         if self.cursor() < self.timeline.tip() {
             self.timeline.check_room()?;
         }
         let mut state = self.frame().state.clone();
         state
             .intervene(self.model(), &intervention)
-            .map_err(Refusal::Intervention)?;
+            .map_err(Refusal::new)?;
         let then = self.value_of(setting, &self.frame().state);
         let mut reply = match (then, self.value_of(setting, &state)) {
             (Some((path, then)), Some((_, now))) if then == now => format!("{path} stays {now}"),

@@ -1,7 +1,7 @@
 //! The connection of a session with its solver: what the solver can do, the state that it is in, and its loss.
 
-use super::refusal::Refusal;
 use super::timeline::Timeline;
+use crate::refusal::{Refusal, refusal};
 use crate::{Log, Strip};
 use stickslip_core::step::state::Controls;
 use stickslip_core::{Capabilities, Friction, Intervention, RewindSupport, State, counted};
@@ -113,7 +113,7 @@ impl Connection {
     ) -> Result<Intervention, Refusal> {
         let number = || {
             let number: Option<f64> = value.parse().ok();
-            number.ok_or_else(|| Refusal::Unsound(format!("{value} is not a number")))
+            number.ok_or_else(|| refusal!("{value} is not a number"))
         };
         let now = controls.friction.first().copied().unwrap_or_default();
         let known = &self.offers.parameters;
@@ -128,7 +128,7 @@ impl Connection {
                 ..now
             }),
             ("friction.angle", _) => {
-                return Err(Refusal::Unsound(self.offers.lacks("a friction change")));
+                return Err(Refusal::new(self.offers.lacks("a friction change")));
             }
             ("cohesion" | "friction.cohesion", _) if self.offers.cohesion => {
                 Intervention::Friction(Friction {
@@ -137,22 +137,22 @@ impl Connection {
                 })
             }
             ("cohesion" | "friction.cohesion", _) => {
-                return Err(Refusal::Unsound(self.offers.lacks("a cohesion change")));
+                return Err(Refusal::new(self.offers.lacks("a cohesion change")));
             }
             (_, Some(parameter)) => Intervention::Parameter {
                 name: path.to_owned(),
-                value: parameter.read(value).map_err(Refusal::Intervention)?,
+                value: parameter.read(value).map_err(Refusal::new)?,
             },
             (_, None) => {
                 let names = joined(known.iter().map(|known| &known.name), ", ");
-                return Err(Refusal::NoParameter {
-                    name: path.to_owned(),
-                    known: if names.is_empty() {
+                return Err(refusal!(
+                    "the solver has no parameter '{path}'; {known}",
+                    known = if names.is_empty() {
                         "it has none".into()
                     } else {
                         format!("it has {names}")
-                    },
-                });
+                    }
+                ));
             }
         })
     }

@@ -1,6 +1,6 @@
 //! The scene with the changes made during a run, and further changes of its scalars.
 
-use super::refusal::Refusal;
+use crate::refusal::{Refusal, refusal};
 use stickslip_core::step::state::Controls;
 use stickslip_core::{Contact, Friction, Intervention};
 use stickslip_scene::format::contact_law::FrictionSpec;
@@ -79,7 +79,7 @@ impl CurrentScene<'_> {
         let mut spec = self.spec();
         paths::set(&mut spec, path, value)?;
         let sound =
-            Scene::from_spec(&self.scene.name, spec).map_err(|e| Refusal::Unsound(e.message))?;
+            Scene::from_spec(&self.scene.name, spec).map_err(|e| Refusal::new(e.message))?;
         if path.starts_with("settings.") {
             Ok(Intervention::Settings(sound.model.settings))
         } else if path.starts_with("friction.") {
@@ -92,10 +92,9 @@ impl CurrentScene<'_> {
         } else if path == "history.increment" {
             Ok(Intervention::Increment(sound.spec.history.increment))
         } else {
-            Err(Refusal::Unchangeable {
-                path: path.into(),
-                value: value.into(),
-            })
+            Err(refusal!(
+                "{path} cannot change during a run; only friction.*, settings.* and history.increment can. Restart with --set {path}={value}"
+            ))
         }
     }
 }

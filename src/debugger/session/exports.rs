@@ -2,12 +2,16 @@
 
 use crate::explain::core::core;
 use crate::explain::diagnosis::too_many;
-use crate::explain::examination::{NotExamined, going_round};
+use crate::explain::examination::{NOT_CONDENSED, going_round};
 use crate::explain::failures;
 use crate::explain::interface_scene;
+use crate::record::export::export_state::FINISHED;
+use crate::record::export::export_state::IN_SPACE;
+use crate::record::export::export_state::OF_JOURNAL;
 use crate::record::export::export_state::{ExportState, PictureRequest};
 use crate::record::export::{self, ExportKind, Origin};
-use crate::{ExportError, ExportScope, Strip};
+use crate::refusal::{Refusal, refusal};
+use crate::{ExportScope, Strip};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use stickslip_core::{Event, Model, ReportedProblem, State, Status, Stepper};
@@ -43,7 +47,7 @@ pub struct PictureContext {
 }
 
 /// Writes the requested file.
-pub(super) fn write(stepper: &mut Stepper, ask: &Export) -> Result<(), ExportError> {
+pub(super) fn write(stepper: &mut Stepper, ask: &Export) -> Result<(), Refusal> {
     let bytes = match ask.what {
         ExportScope::Core => {
             let text = core_of(stepper, &ask.state, &ask.origin)?;
@@ -58,7 +62,7 @@ pub(super) fn write(stepper: &mut Stepper, ask: &Export) -> Result<(), ExportErr
     };
     let kind = export::kind(&ask.file).ok();
     let names = match kind.filter(|_| bytes.len() > 1) {
-        Some(kind) => kind.files(&ask.file).map_err(ExportError::NoFile)?,
+        Some(kind) => kind.files(&ask.file).map_err(Refusal::new)?,
         None => vec![ask.file.clone()],
     };
     let whole: Vec<_> = names.into_iter().zip(bytes).collect();
@@ -66,27 +70,25 @@ pub(super) fn write(stepper: &mut Stepper, ask: &Export) -> Result<(), ExportErr
 }
 
 /// The scene with the core of the cycle that a state runs into.
-fn core_of(stepper: &mut Stepper, state: &State, origin: &Origin) -> Result<String, ExportError> {
+fn core_of(stepper: &mut Stepper, state: &State, origin: &Origin) -> Result<String, Refusal> {
     if state.status == Status::Finished {
-        return Err(ExportError::Finished);
+        return Err(Refusal::new(FINISHED));
     }
     stepper.restore(state);
     let problem = stepper
         .interface_problem()
-        .ok_or(NotExamined::NotCondensed)?;
-    let (problem, cycle) = going_round(stepper, state, &problem)?.ok_or(ExportError::NoCycle)?;
-    let core = core(&problem).ok_or_else(|| NotExamined::TooMany(too_many(&cycle)))?;
-    Ok(export::core(stepper.model(), origin, &cycle, &core)?)
+        .ok_or_else(|| Refusal::new(NOT_CONDENSED))?;
+    let (problem, cycle) = going_round(stepper, state, &problem)?.ok_or_else(|| {
+        refusal!("the minor iterations do not cycle from here, so there is no core")
+    })?;
+    let core = core(&problem).ok_or_else(|| Refusal::new(too_many(&cycle)))?;
+    export::core(stepper.model(), origin, &cycle, &core)
 }
 
 /// The contents of a file of this kind.
-fn shown(
-    stepper: &mut Stepper,
-    ask: &Export,
-    kind: &ExportKind,
-) -> Result<Vec<Vec<u8>>, ExportError> {
+fn shown(stepper: &mut Stepper, ask: &Export, kind: &ExportKind) -> Result<Vec<Vec<u8>>, Refusal> {
     let Some(seen) = &ask.shown else {
-        return Err(ExportError::Finished);
+        return Err(Refusal::new(FINISHED));
     };
     let ended = match &ask.state.status {
         Status::Failed(failure) => failures::describe(stepper.model(), failure),
@@ -105,7 +107,8 @@ fn shown(
         events: &[],
         accepted: &[],
     };
-    kind.made(&shown, stepper).ok_or(ExportError::OfJournal)?
+    kind.made(&shown, stepper)
+        .ok_or_else(|| Refusal::new(OF_JOURNAL))?
 }
 
 /// The scene with the core of the cycle of an interface problem that an attached solver reports.
@@ -116,12 +119,12 @@ pub fn core_of_reported(
     state: &State,
     posed: &ReportedProblem,
     origin: &Origin,
-) -> Result<String, ExportError> {
+) -> Result<String, Refusal> {
     if posed.tangents == 2 {
-        return Err(ExportError::InSpace);
+        return Err(Refusal::new(IN_SPACE));
     }
     let problem = interface_scene::problem(model, state, posed);
-    let (_, mut stepper) = interface_scene::stepper(problem).map_err(Box::new)?;
+    let (_, mut stepper) = interface_scene::stepper(problem)?;
     let start = stepper.state().clone();
     core_of(&mut stepper, &start, origin)
 }
@@ -130,19 +133,15 @@ pub fn core_of_reported(
 /// format.
 ///
 /// # Errors If it cannot be written.
-pub fn write_posed(
-    model: &Model,
-    posed: &ReportedProblem,
-    ask: &Export,
-) -> Result<(), ExportError> {
+pub fn write_posed(model: &Model, posed: &ReportedProblem, ask: &Export) -> Result<(), Refusal> {
     if posed.tangents == 2 {
-        return Err(ExportError::InSpace);
+        return Err(Refusal::new(IN_SPACE));
     }
     let text = match (ask.what, export::kind(&ask.file)) {
         (ExportScope::Core, _) => core_of_reported(model, &ask.state, posed, &ask.origin)?,
         (_, Ok(kind)) if kind.may_be_frozen && kind.extension != "ron" => {
             let problem = interface_scene::problem(model, &ask.state, posed);
-            let (scene, mut stepper) = interface_scene::stepper(problem).map_err(Box::new)?;
+            let (scene, mut stepper) = interface_scene::stepper(problem)?;
             let shown = PictureContext {
                 scene,
                 event: None,

@@ -1,7 +1,7 @@
 //! Writes the journal of a session: to a file, to memory until there is one, or not at all.
 
-use super::refusal::Refusal;
 use crate::record::journal::{Entry, Journal, JournalError};
+use crate::refusal::{Refusal, refusal};
 use std::path::{Path, PathBuf};
 use stickslip_core::counted;
 use stickslip_scene::Scene;
@@ -91,7 +91,9 @@ impl JournalWriter {
             });
         };
         if !self.is_on() && has_steps {
-            return Err(Refusal::Forgotten);
+            return Err(refusal!(
+                "this session has kept no record of its commands, so no journal can be written"
+            ));
         }
         self.write_to(Journal::create(&file, scene, &self.entries)?);
         Ok(format!(

@@ -13,7 +13,6 @@
 use super::background::Background;
 use super::connection::Connection;
 use super::journal_writer::JournalWriter;
-use super::refusal::Refusal;
 use super::timeline::Timeline;
 use super::worker::{Message, Worker};
 use crate::history::tree::Budget;
@@ -22,6 +21,7 @@ use crate::history::watches::Watches;
 use crate::record::journal::{self, Entry};
 use crate::record::state_digest::StateDigests;
 use crate::recorded::calculix::words::NO_MODES;
+use crate::refusal::{Refusal, refusal};
 use crate::{Breakpoints, Command, Frame, Log, Tree};
 use std::sync::Arc;
 use std::time::Duration;
@@ -248,7 +248,9 @@ impl Session {
     /// A message that says what is wrong and what would be right.
     pub fn submit(&mut self, command: Command) -> Result<Reply, Refusal> {
         if self.is_running() {
-            return Err(Refusal::Running);
+            return Err(refusal!(
+                "the solver is running; interrupt it first (Ctrl-C)"
+            ));
         }
         (self.solved, self.accepted) = (0, 0);
         let reply = self.carry_out(command.clone())?;

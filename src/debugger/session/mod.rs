@@ -7,7 +7,7 @@
 //! - [`worker`]: the thread that solves; [`background`]: the thread that analyses; [`exports`]: the files it
 //!   writes; `trials`: one of the analyses.
 //! - `recorded_run`: sessions on recorded runs.
-//! - [`journal_writer`]: the journal being written; [`replay`]: repeating a journal; [`refusal`]: the errors.
+//! - [`journal_writer`]: the journal being written; [`replay`]: repeating a journal.
 
 pub mod background;
 pub mod background_messages;
@@ -20,11 +20,9 @@ pub mod machine;
 mod motion;
 mod questions;
 mod recorded_run;
-pub mod refusal;
 pub mod replay;
 pub mod timeline;
 mod trials;
 pub mod worker;
 
 pub use machine::{Reply, Session};
-pub use refusal::Refusal;

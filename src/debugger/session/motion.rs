@@ -1,8 +1,8 @@
 //! Motions: forward, back, and to a step; over recorded steps, and past the end of the line.
 
 use super::machine::{Session, Task};
-use super::refusal::Refusal;
 use super::worker::Steps;
+use crate::refusal::{Refusal, refusal};
 use crate::{Breakpoints, Unit};
 use stickslip_core::{Status, counted};
 
@@ -43,7 +43,7 @@ impl Session {
     /// Moves the cursor back.
     pub(super) fn back(&mut self, unit: Unit, count: u32) -> Result<String, Refusal> {
         if self.cursor() == 0 {
-            return Err(Refusal::Start);
+            return Err(refusal!("already at the start"));
         }
         let (at, hits) = self.timeline.backward(unit, count, &self.breakpoints);
         Ok(self.go_to(at, &hits))
@@ -53,7 +53,9 @@ impl Session {
     pub(super) fn jump(&mut self, step: usize) -> Result<String, Refusal> {
         let last = self.timeline.tip();
         if step > last {
-            return Err(Refusal::NoStep { step, last });
+            return Err(refusal!(
+                "step {step} does not exist yet; the last one is {last}"
+            ));
         }
         Ok(self.go_to(step, &[]))
     }

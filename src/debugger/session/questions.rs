@@ -3,13 +3,14 @@
 use super::background_messages::{BetweenRuns, Reported};
 use super::exports::{Export, PictureContext};
 use super::machine::Session;
-use super::refusal::Refusal;
 use crate::explain::report;
 use crate::explain::reported_pushes;
 use crate::history::run_report::run_report;
+use crate::record::export::export_state::OF_JOURNAL;
 use crate::record::export::{self, ExportSource, Origin};
 use crate::record::snapshot;
-use crate::{DiagnosisPage, Examination, ExportError, ExportScope, PointKind, Snapshot};
+use crate::refusal::Refusal;
+use crate::{DiagnosisPage, Examination, ExportScope, PointKind, Snapshot};
 use std::path::PathBuf;
 use stickslip_core::Status;
 use stickslip_platform::files;
@@ -110,9 +111,9 @@ impl Session {
         if what == ExportScope::Shown {
             let kind = export::kind(&file)?;
             if matches!(kind.made_of, ExportSource::Journal) {
-                return Err(ExportError::OfJournal.into());
+                return Err(Refusal::new(OF_JOURNAL));
             }
-            for part in kind.files(&file).map_err(ExportError::NoFile)? {
+            for part in kind.files(&file).map_err(Refusal::new)? {
                 drop(files::Output::create(&part, overwrite)?);
             }
         }

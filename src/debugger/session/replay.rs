@@ -1,20 +1,23 @@
 //! Rebuilds a session from its journal, bit by bit.
 
 use super::machine::Session;
-use super::refusal::Departure;
 use crate::record::journal::{Entry, Journal, JournalError, Record};
 use crate::record::state_digest::digest_like;
+use crate::refusal::{Refusal, refusal};
 use crate::{Breakpoints, JournalTarget, Unit};
+use stickslip_core::counted;
 use stickslip_scene::shown;
 
 impl Session {
     /// Repeats one entry of a journal.
     ///
     /// # Errors If the result differs from the recorded one.
-    fn replay(&mut self, entry: &Entry) -> Result<(), Departure> {
+    fn replay(&mut self, entry: &Entry) -> Result<(), Refusal> {
         match &entry.command {
             // A journal must not be able to make the program write files.
-            command if command.is_look() => return Err(Departure::NoMotion),
+            command if command.is_look() => {
+                return Err(refusal!("a journal cannot contain this command"));
+            }
             command if command.is_motion() => self.travel(entry.solved, entry.cursor)?,
             command => {
                 self.submit(command.clone())?;
@@ -23,17 +26,20 @@ impl Session {
         }
         let place = self.timeline.place();
         if place != (entry.branch, entry.cursor) {
-            return Err(Departure::Leads {
-                now: (place.0 + 1, place.1),
-                then: (entry.branch.saturating_add(1), entry.cursor),
-            });
+            return Err(refusal!(
+                "it now ends at step {} of branch b{} instead of step {} of b{}",
+                place.1,
+                place.0 + 1,
+                entry.cursor,
+                entry.branch.saturating_add(1)
+            ));
         }
         let digest = digest_like(&entry.digest, &self.frame().state);
         if digest != entry.digest {
-            return Err(Departure::State {
-                now: digest,
-                then: shown::cut(&entry.digest, 40),
-            });
+            return Err(refusal!(
+                "the state is now {digest} instead of {then}",
+                then = shown::cut(&entry.digest, 40)
+            ));
         }
         // An interrupted motion is replayed up to where it stopped.
         if entry.command.is_motion() {
@@ -45,19 +51,20 @@ impl Session {
     }
 
     /// Solves this many minor iterations from the tip of the branch, then moves to a step.
-    fn travel(&mut self, solved: u64, step: usize) -> Result<(), Departure> {
+    fn travel(&mut self, solved: u64, step: usize) -> Result<(), Refusal> {
         if solved > 0 {
             self.solved = 0;
             self.timeline.move_to(self.timeline.tip());
-            let count = u32::try_from(solved).map_err(|_| Departure::TooMuch)?;
+            let count = u32::try_from(solved)
+                .map_err(|_| refusal!("it solves too many iterations for one motion"))?;
             self.solve(Unit::Minor, count, Breakpoints::default());
             self.wait();
         }
         if solved > 0 && self.solved != solved {
-            return Err(Departure::Solves {
-                now: self.solved,
-                then: solved,
-            });
+            return Err(refusal!(
+                "it now solves {} instead of {solved}",
+                counted(self.solved, "minor iteration")
+            ));
         }
         self.jump(step)?;
         self.wait();

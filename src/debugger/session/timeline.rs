@@ -1,7 +1,6 @@
 //! The history of a session as it is shown: the current line of its tree of branches, and the cursor on it.
 
 use super::background_messages::Reported;
-use super::refusal::Refusal;
 use super::worker::Steps;
 use crate::explain::failures;
 use crate::explain::headline::headline;
@@ -15,6 +14,7 @@ use crate::history::rounds::{self, rounds};
 use crate::history::verdicts;
 use crate::record::export::export_state::COLUMNS;
 use crate::record::snapshot::AppliedIntervention;
+use crate::refusal::{Refusal, refusal};
 use crate::{BranchTarget, Breakpoints, Frame, PointKind, ReportedIterations, Strip, Tree, Unit};
 use std::sync::Arc;
 use stickslip_core::{Event, Intervention, Model, Norms, Outcome, Position, State, Status};
@@ -126,7 +126,12 @@ impl Timeline {
         if taken < most {
             Ok(())
         } else {
-            Err(Refusal::NoRoom { taken, most })
+            Err(refusal!(
+                "no new branch: the existing ones take {} MB (limit {} MB); continue from the tip of a \
+         branch instead",
+                taken >> 20,
+                most >> 20
+            ))
         }
     }
 
@@ -153,7 +158,9 @@ impl Timeline {
             BranchTarget::Named(name) => branches::find(&self.tree, name)?,
         };
         if count == 1 {
-            return Err(Refusal::OneBranch);
+            return Err(refusal!(
+                "there is only one branch; an intervention before the tip starts another"
+            ));
         }
         self.switch(to);
         let verdict = verdicts::describe(&self.tree, &verdicts::verdict(&self.tree, to));
@@ -177,11 +184,13 @@ impl Timeline {
             .strip_prefix('b')
             .is_some_and(|n| n.parse::<u32>().is_ok());
         if label.is_empty() || label.contains(shown::is_order) {
-            return Err(Refusal::NoName);
+            return Err(refusal!("a branch name must be one line of text"));
         } else if self.tree.branches().iter().any(|b| b.label == label) {
-            return Err(Refusal::TakenName(label));
+            return Err(refusal!("branch name '{label}' is already in use"));
         } else if is_number {
-            return Err(Refusal::NumberName(label));
+            return Err(refusal!(
+                "branch name '{label}' looks like a branch number; choose another"
+            ));
         }
         self.tree.rename(label, true);
         Ok(format!("this branch is {}", self.name()))
@@ -200,19 +209,23 @@ impl Timeline {
         let current = self.tree.current();
         let others = self.tree.branches();
         let unnamed = match others.len() {
-            1 => Refusal::OneBranch,
-            _ => Refusal::WhichBranch,
+            1 => {
+                refusal!("there is only one branch; an intervention before the tip starts another")
+            }
+            _ => refusal!("which branch? :compare BRANCH"),
         };
         let other = match other {
             Some(name) => branches::find(&self.tree, name)?,
             None => others[current].parent.ok_or(unnamed)?,
         };
         if other == current {
-            return Err(Refusal::SameBranch);
+            return Err(refusal!(
+                "this is the current branch; name another one to compare it with"
+            ));
         }
         let comparison = self
             .compare(current, other)
-            .ok_or(Refusal::NothingToCompare)?;
+            .ok_or_else(|| refusal!("there is nothing to compare"))?;
         Ok(compare::describe(&self.tree, &comparison))
     }
 

@@ -1,17 +1,24 @@
 //! Quantities of a state: now, some minor iterations later, or at the end of the increment.
 
-use super::refusal::LessonError;
 use super::runs::Runs;
 use crate::Frame;
 use crate::history::strip::norms_after;
+use crate::refusal::{Refusal, refusal};
 use std::convert::Infallible;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use stickslip_core::interface::census::census;
 use stickslip_core::{
     ContactRecord, ContactState, Cycle, Event, Failure, Intervention, Mode, Model, Outcome, RunEnd,
-    Stability, Stepper, Trials, Until, Verdict,
+    Stability, Stepper, Trials, Until, Verdict, counted,
 };
+
+/// Why the interface is not known.
+const NOT_CONDENSED: &str = "the bodies of this state cannot be condensed";
+/// Why nothing follows.
+const DONE: &str = "the history is complete";
+/// Why there is no lag.
+const NO_LAG: &str = "no T_max lags here";
 
 /// Decimal digits of an increment to which the load of a change of mode is found.
 const DIGITS: u32 = 4;
@@ -64,13 +71,15 @@ impl IncrementEnd {
     /// Whether the residuals near the solution converge quadratically rather than linearly.
     ///
     /// # Errors If none are near the solution.
-    pub fn is_quadratic(&self) -> Result<bool, LessonError> {
+    pub fn is_quadratic(&self) -> Result<bool, Refusal> {
         let mut pairs = self
             .residuals
             .windows(2)
             .filter(|pair| (FAR..NEAR).contains(&pair[0]))
             .peekable();
-        pairs.peek().ok_or(LessonError::NoRate)?;
+        pairs.peek().ok_or_else(|| {
+            refusal!("the residuals of the increment do not show a rate of convergence")
+        })?;
         Ok(pairs.any(|pair| pair[1] < pair[0].powf(DOUBLING)))
     }
 }
@@ -79,7 +88,7 @@ impl FrameValues {
     /// The frame after this many more minor iterations.
     ///
     /// # Errors If the history ends earlier.
-    pub fn ahead(&self, minors: u32) -> Result<FrameValues, LessonError> {
+    pub fn ahead(&self, minors: u32) -> Result<FrameValues, Refusal> {
         let mut look = self.clone();
         if minors == 0 {
             return Ok(look);
@@ -88,7 +97,7 @@ impl FrameValues {
         let until = Until::end().minors(minors.into()).past_failures();
         let end = stepper.drive(until, |_| ControlFlow::<Infallible>::Continue(()));
         if end == RunEnd::Finished {
-            return Err(LessonError::Done);
+            return Err(Refusal::new(DONE));
         }
         look.frame.event = Some(Arc::new(stepper.event().clone()));
         look.frame.state = stepper.state().clone();
@@ -99,7 +108,7 @@ impl FrameValues {
     /// How this increment ends without interventions.
     ///
     /// # Errors If it does not end within the limit.
-    pub fn end(&self) -> Result<IncrementEnd, LessonError> {
+    pub fn end(&self) -> Result<IncrementEnd, Refusal> {
         let mut stepper = self.stepper();
         let mut minors = 0;
         let (mut majors, mut residuals) = (0, Vec::new());
@@ -117,8 +126,15 @@ impl FrameValues {
             RunEnd::Stopped(()) => (true, None),
             RunEnd::Failed(Failure::Cycle(cycle)) => (false, Some(cycle)),
             RunEnd::Failed(_) => (false, None),
-            RunEnd::Finished | RunEnd::Interrupted => return Err(LessonError::Done),
-            RunEnd::Spent => return Err(LessonError::Endless(ENDLESS)),
+            RunEnd::Finished | RunEnd::Interrupted => {
+                return Err(Refusal::new(DONE));
+            }
+            RunEnd::Spent => {
+                return Err(refusal!(
+                    "the increment does not end within {}",
+                    counted(ENDLESS, "minor iteration")
+                ));
+            }
         };
         Ok(IncrementEnd {
             minors,
@@ -132,19 +148,19 @@ impl FrameValues {
     /// The judge's verdict on the last accepted increment.
     ///
     /// # Errors If no increment has been accepted.
-    pub fn verdict(&self) -> Result<&Verdict, LessonError> {
+    pub fn verdict(&self) -> Result<&Verdict, Refusal> {
         self.frame
             .state
             .start
             .verdict
             .as_ref()
-            .ok_or(LessonError::NotJudged)
+            .ok_or_else(|| refusal!("no increment has been accepted yet"))
     }
 
     /// The latest relative residual: after the major iteration if it ended here, otherwise before it.
     ///
     /// # Errors If no iteration has been solved.
-    pub fn residual(&self) -> Result<f64, LessonError> {
+    pub fn residual(&self) -> Result<f64, Refusal> {
         let event = self.event()?;
         Ok(norms_after(&event.outcome)
             .unwrap_or(&event.before)
@@ -155,39 +171,38 @@ impl FrameValues {
     /// solve, or departs from it.
     ///
     /// # Errors If the node does not slide with a lagged T_max both now and after the next solve.
-    pub fn lag(&self, slave: usize) -> Result<f64, LessonError> {
-        let off = |look: &FrameValues| -> Result<f64, LessonError> {
+    pub fn lag(&self, slave: usize) -> Result<f64, Refusal> {
+        let off = |look: &FrameValues| -> Result<f64, Refusal> {
             let record = look.record(slave)?;
             let slides = record.decision.before == Mode::Sliding;
             slides
                 .then_some(record.t_max - record.t_max_used)
-                .ok_or(LessonError::NoLag)
+                .ok_or_else(|| Refusal::new(NO_LAG))
         };
         let lag = off(&self.ahead(1)?)? / off(self)?;
         Some(lag)
             .filter(|lag| lag.is_finite())
-            .ok_or(LessonError::NoLag)
+            .ok_or_else(|| Refusal::new(NO_LAG))
     }
 
     /// The runs of the lesson's chart.
     ///
     /// # Errors If the lesson has no chart.
-    pub fn runs(&self) -> Result<&Runs, LessonError> {
-        self.runs.as_deref().ok_or(LessonError::NoRuns)
+    pub fn runs(&self) -> Result<&Runs, Refusal> {
+        self.runs
+            .as_deref()
+            .ok_or_else(|| refusal!("this lesson has no chart: [\"PATH=A,B\"]"))
     }
 
     /// The number of consistent states of the frozen problem of this major iteration.
     ///
     /// # Errors If the bodies cannot be condensed, or there are too many nodes for a census.
-    pub fn answers(&self) -> Result<usize, LessonError> {
+    pub fn answers(&self) -> Result<usize, Refusal> {
         let frozen = self
             .stepper()
             .interface_problem()
-            .ok_or(LessonError::NotCondensed)?;
-        Ok(census(&frozen)
-            .map_err(LessonError::NoCensus)?
-            .answers
-            .len())
+            .ok_or_else(|| Refusal::new(NOT_CONDENSED))?;
+        Ok(census(&frozen).map_err(Refusal::new)?.answers.len())
     }
 
     /// Stability of the shown equilibrium under a constant load.
@@ -198,11 +213,11 @@ impl FrameValues {
     /// The condensed problem of the next minor iteration at a slave node.
     ///
     /// # Errors If the bodies cannot be condensed, or a body is loose without contact.
-    pub fn interface(&self, slave: usize) -> Result<CondensedNode, LessonError> {
+    pub fn interface(&self, slave: usize) -> Result<CondensedNode, Refusal> {
         let frozen = self
             .stepper()
             .interface_problem()
-            .ok_or(LessonError::NotCondensed)?;
+            .ok_or_else(|| Refusal::new(NOT_CONDENSED))?;
         let condensed = || {
             let at = frozen.nodes.iter().position(|node| node.slave == slave)?;
             let mut trials = Trials::new(&frozen)?;
@@ -222,14 +237,14 @@ impl FrameValues {
                 compliance: [row(normal), row(tangential)],
             })
         };
-        condensed().ok_or(LessonError::NotCondensed)
+        condensed().ok_or_else(|| Refusal::new(NOT_CONDENSED))
     }
 
     /// The load factor at which a slave node leaves its mode, by shorter and shorter increments: within a 10000th of the
     /// increment.
     ///
     /// # Errors If the node keeps its mode to the end of the history, or an increment fails.
-    pub fn leaves(&self, slave: usize) -> Result<f64, LessonError> {
+    pub fn leaves(&self, slave: usize) -> Result<f64, Refusal> {
         let mut stepper = self.stepper();
         let mut state = self.frame.state.clone();
         let before = self.next(slave);
@@ -239,7 +254,7 @@ impl FrameValues {
             stepper.restore(&state);
             stepper
                 .intervene(&Intervention::Increment(size))
-                .map_err(|_| LessonError::Done)?;
+                .map_err(|_| Refusal::new(DONE))?;
             let end = stepper.drive(Until::end().minors(ENDLESS.into()), |stepper| {
                 if !matches!(stepper.event().outcome, Outcome::Increment { .. }) {
                     return ControlFlow::Continue(());
@@ -253,7 +268,7 @@ impl FrameValues {
                 ControlFlow::Continue(())
             });
             if !matches!(end, RunEnd::Stopped(())) {
-                return Err(LessonError::Done);
+                return Err(Refusal::new(DONE));
             }
             size /= 10.0;
         }
@@ -269,17 +284,17 @@ impl FrameValues {
     /// The last minor iteration.
     ///
     /// # Errors If there is none.
-    pub fn event(&self) -> Result<&Event, LessonError> {
+    pub fn event(&self) -> Result<&Event, Refusal> {
         let event = self.frame.event.as_deref();
-        event.ok_or(LessonError::Unsolved)
+        event.ok_or_else(|| refusal!("no iteration has been solved yet"))
     }
 
     /// The record of a slave node in it.
     ///
     /// # Errors If there is none.
-    pub fn record(&self, slave: usize) -> Result<&ContactRecord, LessonError> {
+    pub fn record(&self, slave: usize) -> Result<&ContactRecord, Refusal> {
         let record = self.event()?.nodes.get(slave);
-        record.ok_or(LessonError::Failed)
+        record.ok_or_else(|| refusal!("the solve failed before this was known"))
     }
 
     /// The mode of a slave node in it; at the start, the initial mode.

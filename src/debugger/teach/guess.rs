@@ -1,9 +1,9 @@
 //! Free mode: decisions of Table 2 are hidden until the user has predicted them.
 
-use super::refusal::LessonRefusal;
 use crate::action::{Action, HiddenDecisions, mode};
 use crate::explain::names;
 use crate::explain::report;
+use crate::refusal::{Refusal, refusal};
 use crate::{Command, Frame};
 use std::collections::{BTreeMap, BTreeSet};
 use stickslip_core::{Mode, Model};
@@ -64,11 +64,11 @@ impl Guess {
         action: &Action,
         cursor: usize,
         frame: &Frame,
-    ) -> Result<(), LessonRefusal> {
+    ) -> Result<(), Refusal> {
         match action {
-            Action::Session(Command::Forward { .. }) if self.is_open(cursor, frame) => {
-                Err(LessonRefusal::PredictFirst)
-            }
+            Action::Session(Command::Forward { .. }) if self.is_open(cursor, frame) => Err(
+                refusal!("predict first: a, then f free, s sliding, x fixed (p ends predicting)"),
+            ),
             Action::Session(Command::Forward { .. } | Command::Back { .. }) => Ok(()),
             Action::Session(_) => {
                 self.forget_after(cursor);
@@ -99,18 +99,24 @@ impl Guess {
         frame: &Frame,
         slave: usize,
         word: &str,
-    ) -> Result<(bool, String), LessonRefusal> {
-        let said = mode(word).ok_or_else(|| LessonRefusal::NoMode(word.into()))?;
+    ) -> Result<(bool, String), Refusal> {
+        let said = mode(word)
+            .ok_or_else(|| refusal!("invalid mode '{word}'; expected free, sliding or fixed"))?;
         let event = frame.event.as_ref().filter(|_| self.is_open(cursor, frame));
         let Some(record) = event.and_then(|event| event.nodes.get(slave)) else {
-            return Err(LessonRefusal::NothingHidden);
+            return Err(refusal!(
+                "no decision is hidden here; step forward and predict the next one"
+            ));
         };
         if self.at != cursor {
             self.at = cursor;
             self.said.clear();
         }
         if self.said.insert(slave, said).is_some() {
-            return Err(LessonRefusal::Predicted(names::slave(model, slave).into()));
+            return Err(refusal!(
+                "{} has been predicted already",
+                names::slave(model, slave)
+            ));
         }
         let (next, reason) = (
             record.decision.next,

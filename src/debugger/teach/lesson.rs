@@ -1,13 +1,13 @@
 //! Lessons: read from a file and checked against their scene; and the built-in ones.
 
 use super::quantity::{self, LessonQuantity, Template};
-use super::refusal::PressError;
 use super::runs::Runs;
 use super::spec::{AnswerSpec, LessonSpec, SceneSpec, StepSpec, When};
 use super::task::{Goal, LessonTask};
 use crate::Command;
 use crate::action::{self, Action, Context};
 use crate::recorded::exchange;
+use crate::refusal::{Refusal, refusal};
 use std::borrow::Cow;
 use std::sync::Arc;
 use stickslip_core::{JudgedLaw, Mode, Model};
@@ -610,13 +610,13 @@ impl LessonReader<'_> {
 }
 
 /// The action of a step, and how to perform it, in words.
-fn press_of(press: &str, context: &Context) -> Result<(Action, String), PressError> {
+fn press_of(press: &str, context: &Context) -> Result<(Action, String), Refusal> {
     let press = press.trim();
     let digits = press.len() - press.trim_start_matches(|c: char| c.is_ascii_digit()).len();
     let (count, key) = press.split_at(digits);
     if let Some(entry) = action::by_key(key) {
         if !count.is_empty() && !entry.takes_count() {
-            return Err(PressError::NoCount(key.into()));
+            return Err(refusal!("{key} takes no count"));
         }
         let action = entry.act(count, context)?;
         return Ok((action, format!("press {press} ({})", entry.name)));
@@ -628,7 +628,7 @@ fn press_of(press: &str, context: &Context) -> Result<(Action, String), PressErr
             .iter()
             .map(|entry| entry.name)
             .filter(|name| name.len() > 3);
-        PressError::NoAction(why, did_you_mean(word, names))
+        refusal!("not a key, and {why}{}", did_you_mean(word, names))
     })?;
     let action = action::parse(press, context)?;
     let how = match found.keys.first() {

@@ -3,8 +3,7 @@
 //! - [`spec`]: the file format; [`lesson`]: lessons checked against their scene, and the built-in ones.
 //! - [`quantity`]: numbers by name, for texts and questions; [`frame_values`]: their values in a state; [`runs`]: those
 //!   of a chart.
-//! - [`tutor`]: a lesson in progress; [`question`]: its questions; [`guess`]: free mode, with decisions hidden until predicted; [`refusal`]:
-//!   errors.
+//! - [`tutor`]: a lesson in progress; [`question`]: its questions; [`guess`]: free mode, with decisions hidden until predicted.
 //! - [`play`]: plays a lesson automatically, to check it; [`progress`]: saves the user's progress; [`hand_in`]: what
 //!   students hand in.
 
@@ -16,7 +15,6 @@ pub mod play;
 pub mod progress;
 pub mod quantity;
 pub mod question;
-pub mod refusal;
 pub mod runs;
 pub mod spec;
 pub mod task;

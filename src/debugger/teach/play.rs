@@ -3,13 +3,14 @@
 use super::lesson::{Lesson, LessonStep};
 use super::progress::{LessonProgress, ProgressStore};
 use super::question::{AnswerKind, TutorQuestion};
-use super::refusal::{LessonRefusal, PlaybackError};
 use super::tutor::Tutor;
 use crate::action::Action;
 use crate::explain::names;
 use crate::recorded::exchange;
+use crate::refusal::{Refusal, refusal};
 use crate::{Command, Recording, Session, Unit};
 use std::sync::Arc;
+use stickslip_core::counted;
 use stickslip_scene::{SceneError, sig4};
 
 /// Maximum number of minor iterations that provide the predictions of a step.
@@ -87,8 +88,7 @@ fn advance(
     let (mut answered, mut before) = (Vec::new(), Vec::new());
     while let Some(step) = lesson.steps.get(tutor.at()).filter(|_| tutor.at() < to) {
         let at = tutor.at();
-        let fault = |why: PlaybackError| lesson.fault(at, why.to_string());
-        let refused = |why: LessonRefusal| fault(why.into());
+        let fault = |why: Refusal| lesson.fault(at, why.to_string());
         if let Some(message) = tutor.fault() {
             return Err(lesson.fault(at, message.to_owned()));
         }
@@ -98,7 +98,7 @@ fn advance(
                 before.push(tutor.text().to_owned());
                 tutor
                     .permits(action, session.cursor(), session.frame())
-                    .map_err(refused)?;
+                    .map_err(fault)?;
                 perform(action, session).map_err(fault)?;
                 tutor.settled(session.shown_frames());
                 continue;
@@ -119,7 +119,10 @@ fn advance(
                     hint: tutor.task_hint(),
                 });
                 if !tutor.is_read() {
-                    return Err(fault(PlaybackError::NotReached(tutor.last_reply())));
+                    return Err(fault(refusal!(
+                        "the solution does not reach the goal: {}",
+                        tutor.last_reply()
+                    )));
                 }
             }
             LessonStep::Ask(_) => {
@@ -142,21 +145,19 @@ fn advance(
                 });
                 tutor
                     .answer(&word, 0, session.cursor(), session.frame())
-                    .map_err(refused)?;
+                    .map_err(fault)?;
             }
             LessonStep::Predict { right, .. } => {
                 predict(*right, tutor, session).map_err(fault)?;
             }
         }
-        tutor
-            .on(session.cursor(), session.frame())
-            .map_err(refused)?;
+        tutor.on(session.cursor(), session.frame()).map_err(fault)?;
     }
     Ok(answered)
 }
 
 /// Executes the action of a step; actions of the screen need no session.
-fn perform(action: &Action, session: &mut Session) -> Result<(), PlaybackError> {
+fn perform(action: &Action, session: &mut Session) -> Result<(), Refusal> {
     if let Action::Session(command) = action {
         session.submit(command.clone())?;
         session.wait();
@@ -165,7 +166,7 @@ fn perform(action: &Action, session: &mut Session) -> Result<(), PlaybackError> 
 }
 
 /// Predicts what Table 2 decides until enough predictions were right.
-fn predict(right: u32, tutor: &mut Tutor, session: &mut Session) -> Result<(), PlaybackError> {
+fn predict(right: u32, tutor: &mut Tutor, session: &mut Session) -> Result<(), Refusal> {
     let step = Action::Session(Command::Forward {
         unit: Unit::Minor,
         count: 1,
@@ -190,7 +191,10 @@ fn predict(right: u32, tutor: &mut Tutor, session: &mut Session) -> Result<(), P
             return Ok(());
         }
     }
-    Err(PlaybackError::FewIterations(right))
+    Err(refusal!(
+        "the history has fewer than {} to predict",
+        counted(right, "iteration")
+    ))
 }
 
 /// An answer as listed by the check.

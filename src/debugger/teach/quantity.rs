@@ -12,14 +12,18 @@
 //! ACTION` the key of an action.
 
 use super::frame_values::FrameValues;
-use super::refusal::LessonError;
 use crate::RoundOff;
 use crate::action::{self, Context};
 use crate::explain::judged;
 use crate::explain::names;
 use crate::explain::report;
+use crate::refusal::{Refusal, refusal};
 use stickslip_core::Mode;
+use stickslip_scene::format::error::did_you_mean;
 use stickslip_scene::sig4;
+
+/// Why a quantity has no number.
+const NO_NUMBER: &str = "this is not a number";
 
 /// A quantity that the solver can provide.
 #[derive(Debug, Clone, PartialEq)]
@@ -122,12 +126,12 @@ impl LessonQuantity {
     /// Parses a quantity: `F_n beam.end`, `load`.
     ///
     /// # Errors If the quantity or its node is unknown.
-    pub fn read(text: &str, context: &Context) -> Result<LessonQuantity, LessonError> {
+    pub fn read(text: &str, context: &Context) -> Result<LessonQuantity, Refusal> {
         let (word, rest) = text.split_once(' ').unwrap_or((text, ""));
         let rest = rest.trim();
         if let Some(nodal) = NodeQuantity::from_word(word) {
             return match rest {
-                "" => Err(LessonError::WhichNode(word.into())),
+                "" => Err(refusal!("{word} needs a node: {{{word} NODE}}")),
                 node => Ok(Of(nodal, action::exact(node, context)?)),
             };
         }
@@ -140,11 +144,11 @@ impl LessonQuantity {
                 let entry = action::ACTIONS.iter().find(|entry| entry.name == action);
                 let key = entry.and_then(|entry| entry.keys.first());
                 key.map(|key| Key(key))
-                    .ok_or_else(|| LessonError::NoKey(action.into()))
+                    .ok_or_else(|| refusal!("{action:?} is not an action with a key"))
             }
             ("right", _, "") => Ok(Right),
             (_, Some(whole), "") => Ok(Solve(whole)),
-            (_, Some(_), _) => Err(LessonError::NotNodal(word.into())),
+            (_, Some(_), _) => Err(refusal!("{word} does not take a node; write {word} alone")),
             _ => Err(unknown(word)),
         }
     }
@@ -152,19 +156,21 @@ impl LessonQuantity {
     /// Its value, if it is a number.
     ///
     /// # Errors If it is not a number or not known.
-    pub fn number(&self, look: &FrameValues) -> Result<f64, LessonError> {
+    pub fn number(&self, look: &FrameValues) -> Result<f64, Refusal> {
         match self {
             Of(nodal, slave) => nodal.number(*slave, look),
             Solve(whole) => whole_number(*whole, look),
             Run(of, settings) => {
                 let run = look.runs()?.of(settings)?;
                 match of {
-                    RunQuantity::Error => run.error.ok_or(LessonError::NoError),
+                    RunQuantity::Error => {
+                        run.error.ok_or_else(|| refusal!("this run has no error"))
+                    }
                     RunQuantity::Factorizations => Ok(run.factorizations as f64),
                 }
             }
             Written(number) => Ok(*number),
-            Right | Key(_) => Err(LessonError::NoNumber),
+            Right | Key(_) => Err(Refusal::new(NO_NUMBER)),
         }
     }
 
@@ -206,7 +212,7 @@ impl LessonQuantity {
     }
 
     /// The quantity as text; `right` is the text of the right answer.
-    fn text(&self, look: &FrameValues, right: &str) -> Result<String, LessonError> {
+    fn text(&self, look: &FrameValues, right: &str) -> Result<String, Refusal> {
         match self {
             Right => Ok(right.into()),
             Key(key) => Ok((*key).into()),
@@ -232,11 +238,11 @@ impl LessonQuantity {
 }
 
 impl NodeQuantity {
-    fn number(self, slave: usize, look: &FrameValues) -> Result<f64, LessonError> {
+    fn number(self, slave: usize, look: &FrameValues) -> Result<f64, Refusal> {
         let frozen = || look.interface(slave);
         let record = look.record(slave);
         let round_off =
-            || -> Result<_, LessonError> { Ok(RoundOff::new(&look.model, &look.event()?.before)) };
+            || -> Result<_, Refusal> { Ok(RoundOff::new(&look.model, &look.event()?.before)) };
         let force = |force: f64| Ok(round_off()?.force(force));
         let length = |length: f64| Ok(round_off()?.length(length));
         match self {
@@ -254,15 +260,20 @@ impl NodeQuantity {
             NodeQuantity::Slip => length(record?.slip),
             NodeQuantity::Lag => look.lag(slave),
             NodeQuantity::Mode | NodeQuantity::Next | NodeQuantity::Reason => {
-                Err(LessonError::NoNumber)
+                Err(Refusal::new(NO_NUMBER))
             }
         }
     }
 }
 
-fn whole_number(whole: SolveQuantity, look: &FrameValues) -> Result<f64, LessonError> {
+fn whole_number(whole: SolveQuantity, look: &FrameValues) -> Result<f64, Refusal> {
     let controls = &look.frame.state.controls;
-    let friction = || controls.friction.first().ok_or(LessonError::NoSlaves);
+    let friction = || {
+        controls
+            .friction
+            .first()
+            .ok_or_else(|| refusal!("this scene has no slave nodes"))
+    };
     Ok(match whole {
         SolveQuantity::Load => match &look.frame.event {
             Some(event) => event.load_factor,
@@ -276,7 +287,7 @@ fn whole_number(whole: SolveQuantity, look: &FrameValues) -> Result<f64, LessonE
         SolveQuantity::Minors => f64::from(look.end()?.minors),
         SolveQuantity::Period => match look.end()?.cycle {
             Some(cycle) => f64::from(cycle.period),
-            None => return Err(LessonError::NoCycle),
+            None => return Err(refusal!("the increment does not end in a cycle")),
         },
         SolveQuantity::Majors => f64::from(look.end()?.majors),
         SolveQuantity::Residual => look.residual()?,
@@ -287,19 +298,19 @@ fn whole_number(whole: SolveQuantity, look: &FrameValues) -> Result<f64, LessonE
             .iter()
             .filter(|node| node.mode == Mode::Sliding)
             .count() as f64,
-        SolveQuantity::Verdict => return Err(LessonError::NoNumber),
+        SolveQuantity::Verdict => return Err(Refusal::new(NO_NUMBER)),
     })
 }
 
 /// Parses a quantity or a literal number.
 ///
 /// # Errors As [`LessonQuantity::read`], and if the quantity is not a number.
-pub fn number(text: &str, context: &Context) -> Result<LessonQuantity, LessonError> {
+pub fn number(text: &str, context: &Context) -> Result<LessonQuantity, Refusal> {
     match text.trim().parse() {
         Ok(number) => Ok(Written(number)),
         Err(_) => match LessonQuantity::read(text.trim(), context)? {
             quantity if quantity.is_number() => Ok(quantity),
-            _ => Err(LessonError::NoNumber),
+            _ => Err(Refusal::new(NO_NUMBER)),
         },
     }
 }
@@ -307,7 +318,7 @@ pub fn number(text: &str, context: &Context) -> Result<LessonQuantity, LessonErr
 /// Parses the settings of a run: `PATH=VALUE PATH=VALUE`.
 ///
 /// # Errors If they cannot be parsed.
-pub fn settings(text: &str) -> Result<Vec<(String, String)>, LessonError> {
+pub fn settings(text: &str) -> Result<Vec<(String, String)>, Refusal> {
     let settings: Option<Vec<_>> = text
         .split_whitespace()
         .map(|word| {
@@ -317,18 +328,20 @@ pub fn settings(text: &str) -> Result<Vec<(String, String)>, LessonError> {
         .collect();
     settings
         .filter(|settings| !settings.is_empty())
-        .ok_or_else(|| LessonError::NoRun(text.to_owned()))
+        .ok_or_else(|| refusal!("{text} does not select exactly one run of the lesson's chart"))
 }
 
-fn unknown(word: &str) -> LessonError {
+fn unknown(word: &str) -> Refusal {
     let all = NodeQuantity::NAMES.into_iter().chain(SolveQuantity::NAMES);
-    LessonError::NoQuantity {
-        word: word.into(),
-        known: all
-            .chain(RunQuantity::NAMES)
-            .chain(["right", "key"])
-            .collect(),
-    }
+    let known: Vec<&str> = all
+        .chain(RunQuantity::NAMES)
+        .chain(["right", "key"])
+        .collect();
+    refusal!(
+        "unknown quantity {word:?}{} (known: {})",
+        did_you_mean(word, known.iter().copied()),
+        known.join(", ")
+    )
 }
 
 /// A text that contains quantities.
@@ -345,13 +358,15 @@ impl Template {
     /// Parses a text with quantities in braces. Line breaks become spaces, since the screen wraps.
     ///
     /// # Errors For the first unknown quantity.
-    pub fn read(text: &str, context: &Context) -> Result<Template, LessonError> {
+    pub fn read(text: &str, context: &Context) -> Result<Template, Refusal> {
         let mut pieces = Vec::new();
         let words: Vec<&str> = text.split_whitespace().collect();
         let text = words.join(" ");
         let mut rest = text.as_str();
         while let Some((words, after)) = rest.split_once('{') {
-            let (name, after) = after.split_once('}').ok_or(LessonError::Brace)?;
+            let (name, after) = after
+                .split_once('}')
+                .ok_or_else(|| refusal!("a brace {{ is not closed by }}"))?;
             pieces.push(Piece::Words(words.into()));
             pieces.push(Piece::Value(LessonQuantity::read(name.trim(), context)?));
             rest = after;
@@ -363,13 +378,15 @@ impl Template {
     /// Checks that the text may be a hint: it must neither look ahead nor contain `asked`, the answer.
     ///
     /// # Errors
-    /// [`LessonError::TellsAnswer`] if it is not allowed.
-    pub fn check_hint(&self, asked: Option<&LessonQuantity>) -> Result<(), LessonError> {
+    /// If it is not allowed.
+    pub fn check_hint(&self, asked: Option<&LessonQuantity>) -> Result<(), Refusal> {
         if self.0.iter().any(|piece| match piece {
             Piece::Value(quantity) => quantity.looks_ahead() || Some(quantity) == asked,
             Piece::Words(_) => false,
         }) {
-            Err(LessonError::TellsAnswer)
+            Err(refusal!(
+                "the hint contains the answer or looks ahead; use numbers of the shown iteration only"
+            ))
         } else {
             Ok(())
         }
@@ -378,7 +395,7 @@ impl Template {
     /// The text with the current values.
     ///
     /// # Errors If a value is not known.
-    pub fn fill(&self, look: &FrameValues, right: &str) -> Result<String, LessonError> {
+    pub fn fill(&self, look: &FrameValues, right: &str) -> Result<String, Refusal> {
         self.0
             .iter()
             .map(|piece| match piece {

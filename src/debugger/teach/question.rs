@@ -3,11 +3,11 @@
 use super::frame_values::FrameValues;
 use super::lesson::{Answer, Ask, Truth};
 use super::quantity::Template;
-use super::refusal::{LessonError, LessonRefusal};
 use crate::action;
 use crate::explain::names::{self, MODES, TABLE_2};
 use crate::explain::report;
 use crate::explain::tested;
+use crate::refusal::{Refusal, refusal};
 use stickslip_core::{Decision, Mode, Rule, Stability, Test};
 use stickslip_scene::{joined, sig4};
 
@@ -49,9 +49,9 @@ enum RightAnswer {
 impl TutorQuestion {
     /// Gets the right answer from the solver. Texts shown before the answer are filled from the current state
     /// `now`.
-    pub(super) fn new(ask: &Ask, now: &FrameValues) -> Result<TutorQuestion, LessonError> {
+    pub(super) fn new(ask: &Ask, now: &FrameValues) -> Result<TutorQuestion, Refusal> {
         let look = now.ahead(ask.ahead)?;
-        let found = |slave: usize| -> Result<_, LessonError> {
+        let found = |slave: usize| -> Result<_, Refusal> {
             let record = look.record(slave)?;
             Ok((slave, record.decision, record.t_max != 0.0))
         };
@@ -72,7 +72,7 @@ impl TutorQuestion {
             Answer::Number(quantity, tolerance) => {
                 let (value, tolerance) = (quantity.number(&look)?, *tolerance);
                 if !value.is_finite() {
-                    return Err(LessonError::NotFinite);
+                    return Err(refusal!("the quantity is not a finite number"));
                 }
                 RightAnswer::Number { value, tolerance }
             }
@@ -96,18 +96,23 @@ impl TutorQuestion {
         Ok(question)
     }
 
-    pub(super) fn is_right(&self, word: &str) -> Result<bool, LessonRefusal> {
+    pub(super) fn is_right(&self, word: &str) -> Result<bool, Refusal> {
         let word = word.trim();
         match &self.right {
             RightAnswer::Mode(right) => match action::mode(word) {
                 Some(mode) => Ok(mode == *right),
-                None => Err(LessonRefusal::NoMode(word.into())),
+                None => Err(refusal!(
+                    "invalid mode '{word}'; expected free, sliding or fixed"
+                )),
             },
             RightAnswer::Choice(right) => match word.parse::<usize>() {
                 Ok(number) if (1..=self.options.len()).contains(&number) => {
                     Ok(number - 1 == *right)
                 }
-                _ => Err(LessonRefusal::NoOption(word.into(), self.options.len())),
+                _ => Err(refusal!(
+                    "invalid choice '{word}'; expected 1 to {}",
+                    self.options.len()
+                )),
             },
             RightAnswer::Number { value, tolerance } => {
                 Ok(is_close(number(word)?, *value, *tolerance))
@@ -209,11 +214,11 @@ impl TutorQuestion {
 }
 
 /// Reads a number; accepts typographic minus signs and decimal commas.
-fn number(word: &str) -> Result<f64, LessonRefusal> {
+fn number(word: &str) -> Result<f64, Refusal> {
     let plain = word.trim().replace('−', "-").replace(',', ".");
     plain
         .parse()
-        .map_err(|_| LessonRefusal::NoNumber(word.into()))
+        .map_err(|_| refusal!("invalid number '{word}'; expected a number such as -0.05 or 2e-3"))
 }
 
 fn is_close(given: f64, value: f64, tolerance: f64) -> bool {
@@ -221,9 +226,9 @@ fn is_close(given: f64, value: f64, tolerance: f64) -> bool {
 }
 
 /// Cells of Table 2 in the row of the node's mode, and the index of the one that applied.
-fn cells(decision: &Decision) -> Result<(Vec<String>, usize), LessonError> {
+fn cells(decision: &Decision) -> Result<(Vec<String>, usize), Refusal> {
     if matches!(decision.rule, Rule::Held | Rule::OffSurface) {
-        return Err(LessonError::NoCell);
+        return Err(refusal!("no cell of Table 2 applies here"));
     }
     let place = |mode: Mode| MODES.iter().position(|m| *m == mode).unwrap_or(0);
     let options = MODES
@@ -239,7 +244,7 @@ fn cells(decision: &Decision) -> Result<(Vec<String>, usize), LessonError> {
 }
 
 /// The only right choice.
-fn chosen(choices: &[(Template, Truth)], look: &FrameValues) -> Result<usize, LessonError> {
+fn chosen(choices: &[(Template, Truth)], look: &FrameValues) -> Result<usize, Refusal> {
     let mut right = Vec::new();
     for (index, (_, truth)) in choices.iter().enumerate() {
         let holds = match truth {
@@ -252,7 +257,9 @@ fn chosen(choices: &[(Template, Truth)], look: &FrameValues) -> Result<usize, Le
             Truth::Obeys => look.verdict()?.broken().next().is_none(),
             Truth::Breaks(law) => look.verdict()?.broken().any(|found| found.law == *law),
             Truth::Stable(wanted) => match look.stability() {
-                Stability::NotKnown => return Err(LessonError::NoStability),
+                Stability::NotKnown => {
+                    return Err(refusal!("the stability of this state is not known"));
+                }
                 found => found.is_unstable() != *wanted,
             },
             Truth::Less(a, b) => {
@@ -269,8 +276,8 @@ fn chosen(choices: &[(Template, Truth)], look: &FrameValues) -> Result<usize, Le
     }
     match right[..] {
         [index] => Ok(index),
-        [] => Err(LessonError::NoneTrue),
-        _ => Err(LessonError::SeveralTrue),
+        [] => Err(refusal!("none of the choices is right")),
+        _ => Err(refusal!("more than one choice is right")),
     }
 }
 

@@ -1,6 +1,6 @@
 //! The runs of a lesson's chart, measured once: their cost and their error.
 
-use super::refusal::LessonError;
+use crate::refusal::{Refusal, refusal};
 use std::sync::OnceLock;
 use stickslip_scene::joined;
 use stickslip_study::chart_file::Chart;
@@ -31,7 +31,7 @@ impl Runs {
     /// Measures the runs, unless that has been done.
     ///
     /// # Errors If a scene is invalid or the chart cannot be measured.
-    pub fn measure(&self) -> Result<&Precision, LessonError> {
+    pub fn measure(&self) -> Result<&Precision, Refusal> {
         let measured = self.measured.get_or_init(|| {
             let mut chart = Chart::open(&self.scene, &self.over).map_err(|e| e.to_string())?;
             chart.set.extend(self.set.iter().cloned());
@@ -49,13 +49,13 @@ impl Runs {
         });
         measured
             .as_ref()
-            .map_err(|why| LessonError::NoChart(why.clone()))
+            .map_err(|why| refusal!("the lesson's chart cannot be measured: {why}"))
     }
 
     /// The run with these settings.
     ///
     /// # Errors If none or several match.
-    pub fn of(&self, settings: &[(String, String)]) -> Result<&Point, LessonError> {
+    pub fn of(&self, settings: &[(String, String)]) -> Result<&Point, Refusal> {
         let mut found = self.measure()?.points.iter().filter(|point| {
             let has =
                 |wanted: &(String, String)| point.settings.iter().any(|own| same(own, wanted));
@@ -67,7 +67,10 @@ impl Runs {
                 let settings = settings
                     .iter()
                     .map(|(path, value)| format!("{path}={value}"));
-                Err(LessonError::NoRun(joined(settings, " ")))
+                Err(refusal!(
+                    "{} does not select exactly one run of the lesson's chart",
+                    joined(settings, " ")
+                ))
             }
         }
     }
@@ -76,11 +79,7 @@ impl Runs {
     ///
     /// # Errors
     /// As [`Runs::of`].
-    pub fn is_cheapest(
-        &self,
-        settings: &[(String, String)],
-        error: f64,
-    ) -> Result<bool, LessonError> {
+    pub fn is_cheapest(&self, settings: &[(String, String)], error: f64) -> Result<bool, Refusal> {
         let own = self.of(settings)?;
         let near = |point: &&Point| point.error.is_some_and(|own| own <= error);
         let mut points = self.measure()?.points.iter().filter(near);

@@ -9,8 +9,8 @@ use super::frame_values::FrameValues;
 use super::guess::Guess;
 use super::lesson::{self, Answer, Ask, Lesson, LessonStep, Truth};
 use super::question::{AnswerKind, TutorQuestion};
-use super::refusal::LessonRefusal;
 use crate::action::{Action, HiddenDecisions};
+use crate::refusal::{Refusal, refusal};
 use crate::{Command, Frame};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -272,7 +272,7 @@ impl Tutor {
         action: &Action,
         cursor: usize,
         frame: &Frame,
-    ) -> Result<bool, LessonRefusal> {
+    ) -> Result<bool, Refusal> {
         match self.step() {
             None => return Ok(false),
             Some(LessonStep::Press { action: wanted, .. }) if action == wanted && !self.pending => {
@@ -296,7 +296,7 @@ impl Tutor {
                 Some(guess) => guess.permits(action, cursor, frame).map(|()| false),
                 None => Ok(false),
             },
-            _ => Err(LessonRefusal::Waits(self.todo())),
+            _ => Err(refusal!("the lesson waits: {}", self.todo())),
         }
     }
 
@@ -352,15 +352,17 @@ impl Tutor {
     /// Continues, if the step only waits for that.
     ///
     /// # Errors If the lesson waits for something else.
-    pub fn on(&mut self, cursor: usize, frame: &Frame) -> Result<(), LessonRefusal> {
+    pub fn on(&mut self, cursor: usize, frame: &Frame) -> Result<(), Refusal> {
         match self.step() {
-            None => Err(LessonRefusal::Over),
+            None => Err(refusal!(
+                "the lesson has ended; q quits, :lesson starts another"
+            )),
             Some(_) if self.is_read() => {
                 self.at += 1;
                 self.enter(cursor, frame);
                 Ok(())
             }
-            Some(_) => Err(LessonRefusal::Waits(self.todo())),
+            Some(_) => Err(refusal!("the lesson waits: {}", self.todo())),
         }
     }
 
@@ -373,7 +375,7 @@ impl Tutor {
         selected: usize,
         cursor: usize,
         frame: &Frame,
-    ) -> Result<(), LessonRefusal> {
+    ) -> Result<(), Refusal> {
         if let (Some(guess), false) = (&mut self.guess, self.done) {
             let model = &self.lesson.model;
             let (good, text) = guess.predict(model, cursor, frame, selected, word)?;
@@ -397,9 +399,14 @@ impl Tutor {
             return Ok(());
         }
         if self.done {
-            return Err(LessonRefusal::Answered);
+            return Err(refusal!(
+                "the question has been answered; press Space to continue"
+            ));
         }
-        let question = self.question.as_mut().ok_or(LessonRefusal::NothingAsked)?;
+        let question = self
+            .question
+            .as_mut()
+            .ok_or_else(|| refusal!("there is no open question"))?;
         let good = question.is_right(word)?;
         question.tries += 1;
         self.done = good || question.tries >= TRIES;
@@ -419,15 +426,19 @@ impl Tutor {
     /// Shows the hint of the question or task. It counts as a wrong answer.
     ///
     /// # Errors If there is none.
-    pub fn hint(&mut self) -> Result<(), LessonRefusal> {
+    pub fn hint(&mut self) -> Result<(), Refusal> {
         let text = match (self.lesson.steps.get(self.at), &mut self.question) {
-            _ if self.done => return Err(LessonRefusal::Answered),
+            _ if self.done => {
+                return Err(refusal!(
+                    "the question has been answered; press Space to continue"
+                ));
+            }
             (_, Some(question)) => {
                 question.tries += 1;
                 question.help()
             }
             (Some(LessonStep::Reach(_)), None) => self.task_hint.clone(),
-            _ => return Err(LessonRefusal::NothingAsked),
+            _ => return Err(refusal!("there is no open question")),
         };
         self.remark = Some(Remark { text, good: None });
         self.note(HINT, false);

@@ -1,16 +1,22 @@
 //! The input of an export: a state and its context.
 
-use super::frozen::{NoExport, Origin};
+use super::frozen::Origin;
 use crate::Strip;
-use crate::explain::examination::NotExamined;
+use crate::explain::examination::NOT_CONDENSED;
+use crate::refusal::Refusal;
 use std::sync::Arc;
-use stickslip_core::{Event, InterfaceProblem, SolverLost, State, Status, Stepper};
-use stickslip_platform::files::FileError;
-use stickslip_scene::{Scene, SceneError};
-use stickslip_study::drawn::PlotError;
+use stickslip_core::{Event, InterfaceProblem, State, Status, Stepper};
+use stickslip_scene::Scene;
 
 /// Number of minor iterations in the timeline of a whole picture.
 pub const COLUMNS: usize = 60;
+
+/// Why nothing is exported after the end of the history.
+pub const FINISHED: &str = "the history is complete, so there is no next problem to export";
+/// Why a problem in space is not exported.
+pub const IN_SPACE: &str = "interface problems in space cannot be exported";
+/// Why no film is exported from a state.
+pub const OF_JOURNAL: &str = ".cast files are made from a journal: stickslip export JOURNAL -o FILE. :journal shows its path";
 
 /// A state and its context.
 pub struct ExportState<'a> {
@@ -67,60 +73,22 @@ pub struct PictureRequest {
     pub monitor: Option<usize>,
 }
 
-/// Why a file cannot be exported.
-#[derive(Debug, thiserror::Error)]
-pub enum ExportError {
-    /// The picture cannot be drawn.
-    #[error(transparent)]
-    Drawn(#[from] PlotError),
-    /// The history has ended and its last problem is not known.
-    #[error("the history is complete, so there is no next problem to export")]
-    Finished,
-    /// No file format has interface problems in space.
-    #[error("interface problems in space cannot be exported")]
-    InSpace,
-    /// The minor iterations do not cycle.
-    #[error("the minor iterations do not cycle from here, so there is no core")]
-    NoCycle,
-    /// There is no interface problem, or it has too many nodes.
-    #[error(transparent)]
-    NotExamined(#[from] NotExamined),
-    /// No file can represent the problem.
-    #[error(transparent)]
-    NoExport(#[from] NoExport),
-    /// The extension is unknown, or does not suit the request.
-    #[error("{0}")]
-    NoFile(String),
-    /// An attached solver reported an invalid interface problem.
-    #[error(transparent)]
-    Unsound(#[from] Box<SceneError>),
-    /// An attached solver does not report the data.
-    #[error(transparent)]
-    Lost(#[from] SolverLost),
-    /// This kind is made from a journal.
-    #[error(
-        ".cast files are made from a journal: stickslip export JOURNAL -o FILE. :journal shows its path"
-    )]
-    OfJournal,
-    /// The file cannot be written.
-    #[error(transparent)]
-    File(#[from] FileError),
-}
-
 /// The frozen interface problem of a state, and the state it belongs to: the problem to be solved next or, at
 /// the end of the history, the last one solved.
 pub(super) fn problem<'a>(
     shown: &ExportState<'a>,
     stepper: &mut Stepper,
-) -> Result<(InterfaceProblem, &'a State), ExportError> {
+) -> Result<(InterfaceProblem, &'a State), Refusal> {
     let state = match (&shown.state.status, shown.last_major) {
-        (Status::Finished, None) => return Err(ExportError::Finished),
+        (Status::Finished, None) => {
+            return Err(Refusal::new(FINISHED));
+        }
         (Status::Finished, Some(last)) => last,
         _ => shown.state,
     };
     stepper.restore(state);
     let problem = stepper
         .interface_problem()
-        .ok_or(NotExamined::NotCondensed)?;
+        .ok_or_else(|| Refusal::new(NOT_CONDENSED))?;
     Ok((problem, state))
 }

@@ -18,6 +18,7 @@ use crate::explain::core::Core;
 use crate::explain::cycles;
 use crate::explain::names;
 use crate::history::verdicts;
+use crate::refusal::{Refusal, refusal};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use stickslip_core::plane::max_abs;
@@ -30,7 +31,12 @@ use stickslip_linalg::DenseFactors;
 use stickslip_scene::format::condensed::{Contact, Matrix, Problem};
 use stickslip_scene::format::read;
 use stickslip_scene::siconos::Friction2d;
-use stickslip_scene::{Scene, SceneError, joined, limits, shown};
+use stickslip_scene::{Scene, joined, limits, shown};
+
+/// Why there is nothing to write.
+const NO_INTERFACE: &str = "no slave node faces a surface, so there is no interface problem";
+/// Why the problem cannot be reduced.
+const NOT_SOLVABLE: &str = "the problem of the nodes that face a surface is singular";
 
 /// If the inverse (relative to the springs) that yields one of the two matrices is larger than this, removing
 /// the springs loses too many digits.
@@ -41,80 +47,6 @@ const COMPARED: u32 = 200;
 const CLOSE: f64 = 1e-6;
 /// Line width of comments.
 const WIDTH: usize = 110;
-
-/// Why a problem cannot be written as a scene.
-#[derive(Debug, thiserror::Error)]
-pub enum NoExport {
-    /// The scene has no slave nodes.
-    #[error("no slave node faces a surface, so there is no interface problem")]
-    NoInterface,
-    /// The equations of the remaining nodes are singular.
-    #[error("the problem of the nodes that face a surface is singular")]
-    Singular,
-    /// Nodes whose forces are carried by a support.
-    #[error(
-        "{0} cannot move along or across the surface: its support carries the contact force, which no matrix can represent"
-    )]
-    EmbeddedFile(String),
-    /// The matrix is too large for a scene file.
-    #[error(
-        "the matrix of {nodes} nodes takes {mebibytes} MiB, but scene files are limited to {} MiB; export the core instead",
-        read::FILE_BYTES >> 20
-    )]
-    Large {
-        /// Number of nodes of the problem.
-        nodes: usize,
-        /// Size of the matrix in MiB.
-        mebibytes: usize,
-    },
-    /// A node has cohesion, but the Siconos format has only friction coefficients.
-    #[error(
-        "{0} has cohesion, which the Siconos format does not support; export a .ron file instead"
-    )]
-    Cohesive(String),
-    /// Why neither matrix exists.
-    #[error("the problem cannot be written as a matrix: {0}")]
-    NoMatrix(String),
-    /// The scene's cycle differs from the problem's.
-    #[error("the core cycles with period {period}, but the exported scene has {found}")]
-    OtherCycle {
-        /// Period of the problem's cycle.
-        period: u32,
-        /// Cycle of the scene.
-        found: String,
-    },
-    /// The file does not behave as the problem does.
-    #[error(transparent)]
-    FileMismatch(#[from] FileMismatch),
-}
-
-/// How a file departs from its problem.
-#[derive(Debug, thiserror::Error)]
-pub enum FileMismatch {
-    /// The file would not be a valid scene.
-    #[error(transparent)]
-    Unsound(#[from] Box<SceneError>),
-    /// Not enough memory to compare.
-    #[error("not enough memory")]
-    Memory,
-    /// The file's history ends at this minor iteration.
-    #[error("its history ends before minor iteration {0}")]
-    Done(u32),
-    /// Only the problem is singular in this minor iteration.
-    #[error("minor iteration {0} is singular in the original only")]
-    Singular(u32),
-    /// Only the file cannot be solved in this minor iteration.
-    #[error("minor iteration {0} cannot be solved")]
-    Unsolved(u32),
-    /// The file's iteration differs from the problem's.
-    #[error("they differ in minor iteration {minor}, by {by:.1e}")]
-    Apart {
-        /// Number of the minor iteration, from 1.
-        minor: u32,
-        /// Relative difference.
-        by: f64,
-    },
-}
 
 /// Where a frozen problem comes from.
 #[derive(Debug, Clone, PartialEq)]
@@ -154,12 +86,7 @@ impl Origin {
 /// The file of a core; `cycle` is that of the whole scene.
 ///
 /// # Errors If it cannot be written.
-pub fn core(
-    model: &Model,
-    origin: &Origin,
-    cycle: &Cycle,
-    core: &Core,
-) -> Result<String, NoExport> {
+pub fn core(model: &Model, origin: &Origin, cycle: &Cycle, core: &Core) -> Result<String, Refusal> {
     let of_core = Cycle {
         members: core
             .cycle
@@ -189,10 +116,10 @@ pub fn core(
         Some(found) if verdicts::is_same_cycle(&found, &core.cycle) => Ok(text),
         other => {
             let found = other.map_or("no cycle".to_owned(), |c| format!("period {}", c.period));
-            Err(NoExport::OtherCycle {
-                period: core.cycle.period,
-                found,
-            })
+            Err(refusal!(
+                "the core cycles with period {period}, but the exported scene has {found}",
+                period = core.cycle.period
+            ))
         }
     }
 }
@@ -212,10 +139,10 @@ pub fn whole(
     model: &Model,
     origin: &Origin,
     problem: &InterfaceProblem,
-) -> Result<String, NoExport> {
+) -> Result<String, Refusal> {
     let here = writable(problem);
     if here.is_empty() {
-        return Err(NoExport::NoInterface);
+        return Err(Refusal::new(NO_INTERFACE));
     }
     let mut head = vec![
         "The frozen interface problem of a major iteration: the bodies reduced to their contact nodes.".to_owned(),
@@ -231,7 +158,9 @@ pub fn whole(
             "Left out (past the ends of all surfaces, or fixed together with the surface): {gone}."
         ));
     }
-    let problem = problem.reduced(&here).ok_or(NoExport::Singular)?;
+    let problem = problem
+        .reduced(&here)
+        .ok_or_else(|| Refusal::new(NOT_SOLVABLE))?;
     let title = format!(
         "Interface of {}: {}",
         origin.scene,
@@ -246,7 +175,7 @@ fn text(
     problem: &InterfaceProblem,
     title: String,
     mut head: Vec<String>,
-) -> Result<String, NoExport> {
+) -> Result<String, Refusal> {
     unsupported(model, problem)?;
     let count = problem.nodes.len();
     let mut problem = problem.clone();
@@ -296,17 +225,21 @@ fn text(
         };
         let text = written.text(&comments);
         if text.len() > read::FILE_BYTES {
-            return Err(NoExport::Large {
-                nodes: count,
-                mebibytes: text.len() >> 20,
-            });
+            return Err(refusal!(
+                "the matrix of {count} nodes takes {mebibytes} MiB, but scene files are limited to {} MiB; export the core instead",
+                read::FILE_BYTES >> 20,
+                mebibytes = text.len() >> 20
+            ));
         }
         match compared(problem, &text) {
             Ok(_) => return Ok(text),
             Err(why) => refused.push(format!("with the {form}, the steps differ: {why}")),
         }
     }
-    Err(NoExport::NoMatrix(refused.join("; ")))
+    Err(refusal!(
+        "the problem cannot be written as a matrix: {}",
+        refused.join("; ")
+    ))
 }
 
 /// A frozen problem in Siconos format in its current state, without the nodes that cannot be written
@@ -314,7 +247,7 @@ fn text(
 /// increment.
 ///
 /// # Errors If it cannot be written: the format supports only a compliance, and no cohesion.
-pub fn siconos(model: &Model, problem: &InterfaceProblem) -> Result<Friction2d, NoExport> {
+pub fn siconos(model: &Model, problem: &InterfaceProblem) -> Result<Friction2d, Refusal> {
     let TotalForceProblem { slaves, w, q } = total(model, problem)?;
     let nodes = || {
         slaves
@@ -323,7 +256,9 @@ pub fn siconos(model: &Model, problem: &InterfaceProblem) -> Result<Friction2d, 
     };
     if let Some(node) = nodes().find(|node| node.friction.cohesion != 0.0) {
         let name = names::slave(model, node.slave).to_owned();
-        return Err(NoExport::Cohesive(name));
+        return Err(refusal!(
+            "{name} has cohesion, which the Siconos format does not support; export a .ron file instead"
+        ));
     }
     let mu = nodes().map(|node| node.friction.coefficient()).collect();
     Ok(Friction2d { w, q, mu })
@@ -343,14 +278,21 @@ pub struct TotalForceProblem {
 /// A problem in total forces.
 ///
 /// # Errors If some motion is unrestrained, or a support carries the contact force of a node.
-pub fn total(model: &Model, problem: &InterfaceProblem) -> Result<TotalForceProblem, NoExport> {
+pub fn total(model: &Model, problem: &InterfaceProblem) -> Result<TotalForceProblem, Refusal> {
     let here = writable(problem);
     if here.is_empty() {
-        return Err(NoExport::NoInterface);
+        return Err(Refusal::new(NO_INTERFACE));
     }
-    let problem = problem.reduced(&here).ok_or(NoExport::Singular)?;
+    let problem = problem
+        .reduced(&here)
+        .ok_or_else(|| Refusal::new(NOT_SOLVABLE))?;
     unsupported(model, &problem)?;
-    let none = || NoExport::NoMatrix("some motion is unrestrained".to_owned());
+    let none = || {
+        refusal!(
+            "the problem cannot be written as a matrix: {}",
+            "some motion is unrestrained"
+        )
+    };
     let (matrix, mut q, _) = compliance(&problem).ok_or_else(none)?;
     let Matrix::Compliance(w) = matrix else {
         return Err(none());
@@ -365,7 +307,7 @@ pub fn total(model: &Model, problem: &InterfaceProblem) -> Result<TotalForceProb
 }
 
 /// Rejects nodes whose forces are carried by a support.
-fn unsupported(model: &Model, problem: &InterfaceProblem) -> Result<(), NoExport> {
+fn unsupported(model: &Model, problem: &InterfaceProblem) -> Result<(), Refusal> {
     let carried: Vec<&str> = problem
         .nodes
         .iter()
@@ -375,7 +317,10 @@ fn unsupported(model: &Model, problem: &InterfaceProblem) -> Result<(), NoExport
     if carried.is_empty() {
         Ok(())
     } else {
-        Err(NoExport::EmbeddedFile(carried.join(", ")))
+        Err(refusal!(
+            "{} cannot move along or across the surface: its support carries the contact force, which no matrix can represent",
+            carried.join(", ")
+        ))
     }
 }
 
@@ -542,8 +487,8 @@ fn wrapped(text: &str) -> impl Iterator<Item = String> {
 }
 
 /// The solver of an exported file at its start.
-fn stepper(text: &str) -> Result<Stepper, FileMismatch> {
-    let scene = Scene::from_text("exported scene", text, &[]).map_err(Box::new)?;
+fn stepper(text: &str) -> Result<Stepper, Refusal> {
+    let scene = Scene::from_text("exported scene", text, &[])?;
     Ok(Stepper::new(Arc::new(scene.model)))
 }
 
@@ -551,7 +496,7 @@ fn stepper(text: &str) -> Result<Stepper, FileMismatch> {
 /// relative difference of a force or length.
 ///
 /// # Errors If the two differ.
-pub fn compared(problem: &InterfaceProblem, text: &str) -> Result<f64, FileMismatch> {
+pub fn compared(problem: &InterfaceProblem, text: &str) -> Result<f64, Refusal> {
     let mut stepper = stepper(text)?;
     // For bonds, the file contains only the contact points, not the nodes behind them.
     let mut touching = problem.clone();
@@ -560,7 +505,7 @@ pub fn compared(problem: &InterfaceProblem, text: &str) -> Result<f64, FileMisma
         .iter_mut()
         .filter_map(|node| node.kinematics.as_mut());
     kinematics.for_each(|over| over.bond = Bond::Hard);
-    let mut trials = Trials::new(&touching).ok_or(FileMismatch::Memory)?;
+    let mut trials = Trials::new(&touching).ok_or_else(|| refusal!("not enough memory"))?;
     let mut nodes = problem.states();
     let (mut worst, mut minor) = (0.0_f64, 0);
     let until = Until::end().minors(COMPARED.into()).past_failures();
@@ -574,17 +519,21 @@ pub fn compared(problem: &InterfaceProblem, text: &str) -> Result<f64, FileMisma
             return ControlFlow::Break(if singular {
                 Ok(())
             } else {
-                Err(FileMismatch::Singular(minor))
+                Err(refusal!(
+                    "minor iteration {minor} is singular in the original only"
+                ))
             });
         };
         if event.nodes.len() != records.len() {
-            return ControlFlow::Break(Err(FileMismatch::Unsolved(minor)));
+            return ControlFlow::Break(Err(refusal!("minor iteration {minor} cannot be solved")));
         }
         for (found, wanted) in event.nodes.iter().zip(&records) {
             let modes = |r: &ContactRecord| (r.decision.before, r.decision.next);
             worst = worst.max(difference(problem, found, wanted));
             if modes(found) != modes(wanted) || worst > CLOSE {
-                return ControlFlow::Break(Err(FileMismatch::Apart { minor, by: worst }));
+                return ControlFlow::Break(Err(refusal!(
+                    "they differ in minor iteration {minor}, by {worst:.1e}"
+                )));
             }
         }
         if settled || failed {
@@ -595,7 +544,12 @@ pub fn compared(problem: &InterfaceProblem, text: &str) -> Result<f64, FileMisma
     });
     match end {
         RunEnd::Stopped(parted) => parted?,
-        RunEnd::Finished => return Err(FileMismatch::Done(minor + 1)),
+        RunEnd::Finished => {
+            return Err(refusal!(
+                "its history ends before minor iteration {}",
+                minor + 1
+            ));
+        }
         RunEnd::Spent | RunEnd::Failed(_) | RunEnd::Interrupted => {}
     }
     Ok(worst)
@@ -620,7 +574,7 @@ fn difference(problem: &InterfaceProblem, a: &ContactRecord, b: &ContactRecord) 
 }
 
 /// The cycle of the first minor iterations of a scene; `None` if they do not cycle.
-fn cycle_of(text: &str) -> Result<Option<Cycle>, FileMismatch> {
+fn cycle_of(text: &str) -> Result<Option<Cycle>, Refusal> {
     let mut stepper = stepper(text)?;
     while let Some(event) = stepper.step() {
         match &event.outcome {

@@ -24,7 +24,8 @@
 //! of text stored as bytes, because only VTK's own reader supports arrays of text. Beam elements with more than
 //! three nodes are written as lines from node to node, and so are surfaces.
 
-use super::export_state::{ExportError, ExportState};
+use super::export_state::ExportState;
+use crate::refusal::{Refusal, refusal};
 use stickslip_core::fem::deformation;
 use stickslip_core::fem::recovery::{self, Configuration};
 use stickslip_core::{
@@ -37,7 +38,7 @@ const VECTOR: &[&str] = &["X", "Y", "Z"];
 const TENSOR: &[&str] = &["XX", "YY", "ZZ", "XY", "YZ", "XZ"];
 
 /// The contents of the file.
-pub(super) fn vtu(shown: &ExportState, _: &mut Stepper) -> Result<Vec<u8>, ExportError> {
+pub(super) fn vtu(shown: &ExportState, _: &mut Stepper) -> Result<Vec<u8>, Refusal> {
     let (at, load) = match shown.event {
         Some(event) => (event.position, event.load_factor),
         None => (shown.origin.at, shown.state.start.load_factor),
@@ -56,7 +57,7 @@ pub fn grid(
     event: Option<&Event>,
     at: Position,
     load: f64,
-) -> Result<Grid, ExportError> {
+) -> Result<Grid, Refusal> {
     let mut grid = Grid {
         points: (0..model.nodes.len())
             .map(|node| model.at_in_space(node))
@@ -103,7 +104,7 @@ fn on_points(grid: &mut Grid, name: &str, components: &'static [&'static str], a
 }
 
 /// The cells of all bodies and surfaces, with their owners.
-fn cells(model: &Model, grid: &mut Grid) -> Result<(), ExportError> {
+fn cells(model: &Model, grid: &mut Grid) -> Result<(), Refusal> {
     let (mut body, mut surface, mut rigid) = (Vec::new(), Vec::new(), Vec::new());
     let mut add = |grid: &mut Grid, cell: Cell, of: [i32; 3]| {
         grid.cells.push(cell);
@@ -184,14 +185,12 @@ fn deformations(model: &Model, state: &State, grid: &mut Grid) {
 }
 
 /// The cell with the VTK type of a kind of element.
-fn cell_kind(kind: ElementKind) -> Result<CellKind, ExportError> {
+fn cell_kind(kind: ElementKind) -> Result<CellKind, Refusal> {
     use CellKind::*;
     [Triangle3, Triangle6, Quad4, Quad8, Quad9]
         .into_iter()
         .find(|&cell| vtu::cell_type(cell) == kind.vtk())
-        .ok_or_else(|| {
-            ExportError::NoFile(format!(".vtu files have no cell for a {}", kind.word()))
-        })
+        .ok_or_else(|| refusal!(".vtu files have no cell for a {}", kind.word()))
 }
 
 /// The cells of a line through nodes in order.

@@ -25,22 +25,23 @@ mod pressures;
 mod timeline;
 mod window;
 
-use export_state::{ExportError, ExportState};
+use crate::refusal::{Refusal, refusal};
+use export_state::ExportState;
 use std::path::{Path, PathBuf};
 use stickslip_core::Stepper;
 use stickslip_scene::joined;
 use stickslip_scene::problems::market;
 
-pub use frozen::{FileMismatch, NoExport, Origin, compared, core, whole, writable};
+pub use frozen::{Origin, compared, core, whole, writable};
 
 /// Function that returns the contents of several files made from a state.
-type MakeParts = fn(&ExportState, &mut Stepper) -> Result<Vec<Vec<u8>>, ExportError>;
+type MakeParts = fn(&ExportState, &mut Stepper) -> Result<Vec<Vec<u8>>, Refusal>;
 
 /// What a kind of file is made from.
 #[derive(Clone, Copy)]
 pub enum ExportSource {
     /// A state. The stepper belongs to the same model and may be in any state.
-    State(fn(&ExportState, &mut Stepper) -> Result<Vec<u8>, ExportError>),
+    State(fn(&ExportState, &mut Stepper) -> Result<Vec<u8>, Refusal>),
     /// A state, in several files: those of [`ExportKind::files`].
     Parts(MakeParts),
     /// A whole session.
@@ -77,7 +78,7 @@ impl ExportKind {
         &self,
         shown: &ExportState,
         stepper: &mut Stepper,
-    ) -> Option<Result<Vec<Vec<u8>>, ExportError>> {
+    ) -> Option<Result<Vec<Vec<u8>>, Refusal>> {
         match self.made_of {
             ExportSource::State(make) => Some(make(shown, stepper).map(|bytes| vec![bytes])),
             ExportSource::Parts(make) => Some(make(shown, stepper)),
@@ -141,7 +142,7 @@ pub const KINDS: &[ExportKind] = &[
 /// The kind of a file, by its extension.
 ///
 /// # Errors If the extension is unknown; the message lists all kinds.
-pub fn kind(file: &Path) -> Result<&'static ExportKind, ExportError> {
+pub fn kind(file: &Path) -> Result<&'static ExportKind, Refusal> {
     let own = file.extension().unwrap_or_default();
     let found = KINDS
         .iter()
@@ -154,7 +155,7 @@ pub fn kind(file: &Path) -> Result<&'static ExportKind, ExportError> {
             ", ",
         );
         let file = file.display();
-        ExportError::NoFile(format!("{file}: unknown file kind; available: {known}"))
+        refusal!("{file}: unknown file kind; available: {known}")
     })
 }
 

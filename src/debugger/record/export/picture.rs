@@ -5,13 +5,14 @@
 //! shape of their markers, and in colours that also differ in greyscale.
 
 use super::chart;
-use super::export_state::{ExportError, ExportState, PicturePart};
+use super::export_state::{ExportState, PicturePart};
 use super::timeline::{self, chosen, marker};
 use super::window::{FORCE, Window};
 use crate::RoundOff;
 use crate::explain::conditions::{Given, conditions};
 use crate::explain::names;
 use crate::explain::outline::{self, Bounds, Point, Projection, curve, extent};
+use crate::refusal::Refusal;
 use stickslip_core::model::SolidElement;
 use stickslip_core::plane::distance;
 use stickslip_core::{
@@ -48,11 +49,11 @@ const VERMILION: Colour = (213, 94, 0);
 /// Colour of bodies.
 const DARK: Colour = (60, 60, 60);
 
-pub(super) fn svg(shown: &ExportState, _: &mut Stepper) -> Result<Vec<u8>, ExportError> {
+pub(super) fn svg(shown: &ExportState, _: &mut Stepper) -> Result<Vec<u8>, Refusal> {
     Ok(sheet(shown)?.svg()?.into_bytes())
 }
 
-pub(super) fn png(shown: &ExportState, _: &mut Stepper) -> Result<Vec<u8>, ExportError> {
+pub(super) fn png(shown: &ExportState, _: &mut Stepper) -> Result<Vec<u8>, Refusal> {
     let pixels = if shown.picture.size.is_some() {
         1.0
     } else {

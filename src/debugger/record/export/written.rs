@@ -1,8 +1,9 @@
 //! Scenes as text (`.ron`), and frozen problems in other programs' formats: `.dat`, `.mtx`, `.h5`.
 
-use super::export_state::{ExportError, ExportState, problem};
+use super::export_state::{ExportState, problem};
 use super::frozen::{self, Origin};
 use crate::explain::names;
+use crate::refusal::{Refusal, refusal};
 use stickslip_core::Stepper;
 use stickslip_exchange::fclib;
 use stickslip_scene::format::notation;
@@ -12,7 +13,7 @@ use stickslip_scene::siconos::{Friction2d, Storage};
 use stickslip_scene::{Scene, joined};
 
 /// The scene with all overrides, or its frozen problem if requested.
-pub(super) fn ron(shown: &ExportState, stepper: &mut Stepper) -> Result<Vec<u8>, ExportError> {
+pub(super) fn ron(shown: &ExportState, stepper: &mut Stepper) -> Result<Vec<u8>, Refusal> {
     if !shown.frozen {
         return Ok(scene(shown.scene)?.into_bytes());
     }
@@ -29,27 +30,27 @@ pub(super) fn ron(shown: &ExportState, stepper: &mut Stepper) -> Result<Vec<u8>,
 }
 
 /// The frozen problem in Siconos format.
-pub(super) fn dat(shown: &ExportState, stepper: &mut Stepper) -> Result<Vec<u8>, ExportError> {
+pub(super) fn dat(shown: &ExportState, stepper: &mut Stepper) -> Result<Vec<u8>, Refusal> {
     let friction = condensed(shown, stepper)?;
     Ok(friction.write(Storage::Dense).into_bytes())
 }
 
 /// The frozen problem as Matrix Market files.
-pub(super) fn mtx(shown: &ExportState, stepper: &mut Stepper) -> Result<Vec<Vec<u8>>, ExportError> {
+pub(super) fn mtx(shown: &ExportState, stepper: &mut Stepper) -> Result<Vec<Vec<u8>>, Refusal> {
     let friction = condensed(shown, stepper)?;
     let texts = market::texts(&friction, &from(shown));
     Ok(texts.map(String::into_bytes).into())
 }
 
 /// The frozen problem in fclib format.
-pub(super) fn h5(shown: &ExportState, stepper: &mut Stepper) -> Result<Vec<u8>, ExportError> {
+pub(super) fn h5(shown: &ExportState, stepper: &mut Stepper) -> Result<Vec<u8>, Refusal> {
     let friction = condensed(shown, stepper)?;
-    fclib::write(&friction.local(), &from(shown)).map_err(|e| ExportError::NoFile(e.to_string()))
+    fclib::write(&friction.local(), &from(shown)).map_err(Refusal::new)
 }
 
-fn condensed(shown: &ExportState, stepper: &mut Stepper) -> Result<Friction2d, ExportError> {
+fn condensed(shown: &ExportState, stepper: &mut Stepper) -> Result<Friction2d, Refusal> {
     let (problem, _) = problem(shown, stepper)?;
-    Ok(frozen::siconos(&shown.scene.model, &problem)?)
+    frozen::siconos(&shown.scene.model, &problem)
 }
 
 /// Origin of the problem, in one line.
@@ -66,13 +67,12 @@ fn from(shown: &ExportState) -> String {
 /// equivalent scene that includes both.
 ///
 /// # Errors If the text does not read back as the same scene.
-pub fn scene(scene: &Scene) -> Result<String, ExportError> {
+pub fn scene(scene: &Scene) -> Result<String, Refusal> {
     if !scene.text.is_empty() && scene.overrides().next().is_none() && !scene.imports() {
         return Ok(scene.text.clone());
     }
     let layout = ron::ser::PrettyConfig::new().new_line("\n").depth_limit(3);
-    let unwritable =
-        |why| ExportError::NoFile(format!("the scene cannot be written as text: {why}"));
+    let unwritable = |why| refusal!("the scene cannot be written as text: {why}");
     let text = notation::lines(&scene.spec, layout).map_err(|e| unwritable(e.to_string()))?;
     let set = joined(scene.overrides().map(|(p, v)| format!("{p}={v}")), ", ");
     let mut head = format!("// From {}", scene.name.replace('\n', " "));
