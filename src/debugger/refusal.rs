@@ -8,6 +8,7 @@ use stickslip_manual::NoPage;
 use stickslip_platform::files::FileError;
 use stickslip_scene::SceneError;
 use stickslip_scene::format::error::SetError;
+use stickslip_study::csv::TableError;
 use stickslip_study::drawn::PlotError;
 
 /// Why something is not done, for the user, with a hint at what would work.
@@ -59,5 +60,6 @@ from!(
     SceneError,
     SetError,
     SnapshotError,
-    SolverLost
+    SolverLost,
+    TableError
 );

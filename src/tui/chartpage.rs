@@ -1,24 +1,9 @@
 //! The state of the work-precision page, and its keys.
 
 use std::path::Path;
-use stickslip_study::csv::TableError;
-use stickslip_study::measuring::NotMeasured;
+use stickslip_debugger::Refusal;
 use stickslip_study::precision::{Cost, Point, Precision};
 use stickslip_study::precision_table;
-
-/// Why a chart cannot be shown.
-#[derive(Debug, thiserror::Error)]
-pub enum NoPage {
-    /// The table is invalid.
-    #[error(transparent)]
-    Table(#[from] TableError),
-    /// The measurement failed.
-    #[error(transparent)]
-    NotMeasured(#[from] Box<NotMeasured>),
-    /// There is nothing to draw.
-    #[error("stopped before any run was finished")]
-    Empty,
-}
 
 /// The work-precision page.
 #[derive(Debug, Clone)]
@@ -41,7 +26,7 @@ impl ChartPage {
     ///
     /// # Errors
     /// If the file cannot be read.
-    pub fn open(file: &str) -> Result<ChartPage, NoPage> {
+    pub fn open(file: &str) -> Result<ChartPage, Refusal> {
         let text = precision_table::open(Path::new(file))?;
         ChartPage::from_table(file, text)
     }
@@ -50,14 +35,14 @@ impl ChartPage {
     ///
     /// # Errors
     /// If the chart has no runs.
-    pub fn from_chart(chart: Precision) -> Result<ChartPage, NoPage> {
+    pub fn from_chart(chart: Precision) -> Result<ChartPage, Refusal> {
         if chart.points.is_empty() {
-            return Err(NoPage::Empty);
+            return Err(Refusal::new("stopped before any run was finished"));
         }
         ChartPage::from_table("chart", precision_table::csv(&[chart]))
     }
 
-    fn from_table(name: &str, text: String) -> Result<ChartPage, NoPage> {
+    fn from_table(name: &str, text: String) -> Result<ChartPage, Refusal> {
         let cost = Cost::default();
         Ok(ChartPage {
             charts: precision_table::read(name, &text, cost, None)?,

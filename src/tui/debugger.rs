@@ -1,7 +1,7 @@
 //! The debugger without its terminal: an [`App`], a session, and the queue of keys that wait for the solver. Keys in, screens out.
 
 use crate::app::{App, Effect, LoadTarget, Overlay, TURN};
-use crate::chartpage::{ChartPage, NoPage};
+use crate::chartpage::ChartPage;
 use crate::chooser_state::{self, Offer, PreviewLoader};
 use crate::event::{Event, KeyEvent};
 use crate::keys;
@@ -15,6 +15,7 @@ use std::collections::VecDeque;
 use std::path::PathBuf;
 use std::time::Duration;
 use stickslip_core::Status;
+use stickslip_debugger::Refusal;
 use stickslip_debugger::action::{self, ChartOf};
 use stickslip_debugger::explain::report;
 use stickslip_debugger::recorded::calculix::words::GREETING;
@@ -448,7 +449,7 @@ impl Debugger {
             .say("measuring in the background; the chart opens when it is ready (Ctrl-C stops it)");
     }
 
-    fn show_chart(&mut self, page: Result<ChartPage, NoPage>) {
+    fn show_chart(&mut self, page: Result<ChartPage, Refusal>) {
         match page {
             Ok(page) => self.app.overlay = Overlay::Chart(Box::new(page)),
             Err(error) => self.app.complain(error),
@@ -470,7 +471,7 @@ impl Debugger {
         };
         (self.measuring, self.app.measuring) = (None, None);
         self.app.say("");
-        let page = result.map_err(|why| NoPage::from(Box::new(why)));
+        let page = result.map_err(Refusal::new);
         self.show_chart(page.and_then(ChartPage::from_chart));
         true
     }

@@ -1,8 +1,9 @@
 //! Loads files on a background thread, so that keys are handled while a large file or a slow disk is read.
 
-use crate::chartpage::{ChartPage, NoPage};
+use crate::chartpage::ChartPage;
 use std::path::Path;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
+use stickslip_debugger::Refusal;
 use stickslip_debugger::record::journal::{Journal, JournalError, Record};
 use stickslip_debugger::teach::progress::ProgressStore;
 use stickslip_debugger::teach::{lesson, play};
@@ -17,7 +18,7 @@ pub enum LoadedFile {
     /// A lesson and the session on its scene.
     Lesson(Result<Box<(Tutor, Session)>, String>),
     /// A chart, loaded or measured.
-    Chart(Result<Box<ChartPage>, NoPage>),
+    Chart(Result<Box<ChartPage>, Refusal>),
 }
 
 /// A file that is being loaded; dropping this cancels it.
