@@ -1,7 +1,5 @@
 //! The error of the debugger.
 
-use crate::record::journal::JournalError;
-use crate::record::snapshot::SnapshotError;
 use std::fmt::Display;
 use stickslip_core::SolverLost;
 use stickslip_manual::NoPage;
@@ -40,26 +38,19 @@ macro_rules! refusal {
     };
 }
 
-pub(crate) use refusal;
-
-macro_rules! from {
+/// Converts other errors by their texts.
+macro_rules! refused_by {
     ($($error:ty),*) => {
-        $(impl From<$error> for Refusal {
-            fn from(error: $error) -> Refusal {
-                Refusal::new(error)
+        $(impl From<$error> for $crate::refusal::Refusal {
+            fn from(error: $error) -> Self {
+                Self::new(error)
             }
         })*
     };
 }
 
-from!(
-    FileError,
-    JournalError,
-    NoPage,
-    PlotError,
-    SceneError,
-    SetError,
-    SnapshotError,
-    SolverLost,
-    TableError
+pub(crate) use {refusal, refused_by};
+
+refused_by!(
+    FileError, NoPage, PlotError, SceneError, SetError, SolverLost, TableError
 );

@@ -9,6 +9,7 @@
 //! A killed process leaves an incomplete last line, which is dropped and reported.
 
 use crate::Command;
+use crate::refusal::refused_by;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::fmt::Write as _;
@@ -122,6 +123,8 @@ pub enum JournalError {
         message: String,
     },
 }
+
+refused_by!(JournalError);
 
 impl From<SceneError> for JournalError {
     fn from(error: SceneError) -> Self {

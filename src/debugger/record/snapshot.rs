@@ -5,6 +5,7 @@
 //! Floats are written so that they read back to the same bits, including NaN and the infinities.
 
 use crate::history::strip::norms_after;
+use crate::refusal::refused_by;
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -161,6 +162,8 @@ pub enum SnapshotError {
     #[error("the snapshot cannot be recomputed: {0}")]
     Replay(String),
 }
+
+refused_by!(SnapshotError);
 
 impl Snapshot {
     /// Records a state. `applied` are the interventions so far, `steps` is the number of minor iterations, and
