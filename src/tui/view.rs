@@ -243,7 +243,8 @@ impl<'a> View<'a> {
 
     /// Whether a value is shown as a dash.
     fn is_absent(&self, value: f64) -> bool {
-        self.attached.is_some() && (value.is_nan() || value == f64::INFINITY)
+        // A node off all surfaces has an infinite gap.
+        value == f64::INFINITY || self.is_unreported(value)
     }
 
     /// A value as a table cell ([`number::fixed_width`]); a dash if an attached solver does not report it.
