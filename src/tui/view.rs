@@ -307,6 +307,7 @@ pub fn context<'a>(view: Option<&View<'a>>, selected: usize, scenes: &'a [String
             .and_then(|view| view.attached)
             .map(|attached| attached.offers),
         state: view.map(|view| &view.frame().state),
+        next: view.and_then(|view| view.frames.get(view.cursor + 1)),
         scenes,
         lessons: teach::list(),
         keymap: None,

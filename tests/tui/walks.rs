@@ -382,4 +382,7 @@ fn a_node_that_is_not_forced_cannot_be_released() {
             .contains("beam.5 follows Table 2 again")
     );
     assert_eq!(branches(&debugger), 2);
+    // Before the forced mode, a release goes on without it.
+    debugger.type_keys("m S s S S M");
+    assert_eq!(branches(&debugger), 3, "{}", debugger.app.message.text);
 }

@@ -180,13 +180,17 @@ impl Action {
     }
 }
 
-/// Whether a node of our own solver is forced, so that it can be released. An attached solver may know more than it reports.
+/// Whether a node of our own solver is forced, so that it can be released. Before an intervention a release goes on without that
+/// one, in a new branch. An attached solver may know more than it reports.
 fn released(slave: usize, context: &Context) -> Result<(), String> {
     let (Some(state), Some(model), None) = (context.state, context.model, context.offers) else {
         return Ok(());
     };
+    let is_followed = context.next.is_some_and(|next| next.intervention.is_some());
     match state.nodes.get(slave).map(|node| node.forced) {
-        Some(Forced::No) => Err(format!("{} is not forced", names::slave(model, slave))),
+        Some(Forced::No) if !is_followed => {
+            Err(format!("{} is not forced", names::slave(model, slave)))
+        }
         _ => Ok(()),
     }
 }
