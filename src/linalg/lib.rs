@@ -30,4 +30,5 @@ pub use check::SolveError;
 pub use dense::{DenseFactors, subtract_product};
 pub use lu::Factors;
 pub use pattern::Pattern;
+pub use registers::vectorise;
 pub use symmetric::SymmetricFactors;

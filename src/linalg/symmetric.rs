@@ -25,7 +25,7 @@ use super::check::{SolveError, UNDERFLOW, largest};
 use super::executor::Executor;
 use super::order::order;
 use super::pattern::{Pattern, symbolic_view};
-use super::registers;
+use super::registers::{self, vectorise};
 use super::subtrees::{LowerHalf, Subtree, Workspace};
 use super::supernodes::Supernodes;
 use faer::linalg::matmul::triangular::{BlockStructure, matmul};
@@ -238,6 +238,14 @@ impl SymmetricFactors {
 
     /// Forward substitution L y = b in the first `count` columns, which also updates the later rows.
     fn forward(&mut self, count: usize) {
+        vectorise(
+            #[inline(always)]
+            || self.substitute(count),
+        );
+    }
+
+    #[inline(always)]
+    fn substitute(&mut self, count: usize) {
         for (s, node) in self.l.nodes.iter().enumerate() {
             let (start, width, rows) = (node.columns.start, node.width(), self.l.rows(s));
             let columns = count.saturating_sub(start).min(width);
@@ -266,6 +274,14 @@ impl SymmetricFactors {
 
     /// Back substitution Lᵀ u = y in the first `count` columns, with known u in the others.
     fn backward(&mut self, count: usize) {
+        vectorise(
+            #[inline(always)]
+            || self.substitute_back(count),
+        );
+    }
+
+    #[inline(always)]
+    fn substitute_back(&mut self, count: usize) {
         for (s, node) in self.l.nodes.iter().enumerate().rev() {
             let (start, width, rows) = (node.columns.start, node.width(), self.l.rows(s));
             let columns = count.saturating_sub(start).min(width);
@@ -354,6 +370,7 @@ impl SymmetricFactors {
 }
 
 /// y = y + a x.
+#[inline(always)]
 fn add(y: &mut [f64], a: f64, x: &[f64]) {
     for (y, x) in y.iter_mut().zip(x) {
         *y += a * x;
@@ -361,6 +378,7 @@ fn add(y: &mut [f64], a: f64, x: &[f64]) {
 }
 
 /// Uses eight sums, so that the processor can vectorise it.
+#[inline(always)]
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     const LANES: usize = 8;
     let mut sums = [0.0; LANES];

@@ -94,6 +94,7 @@ impl Material {
 
     /// Stress and tangent at a strain E11, E22, 2 E12; `None` if the law has no response, because a neo-Hookean material cannot
     /// be inverted.
+    #[inline(always)]
     pub fn response(&self, strain: &Vector3<f64>) -> Option<Response> {
         match self.law {
             Law::Svk => Some(self.linear(strain)),
@@ -102,6 +103,7 @@ impl Material {
     }
 
     /// S = C : E with constant plane moduli, which the updated Lagrangian formulation uses for every increment.
+    #[inline(always)]
     pub fn linear(&self, strain: &Vector3<f64>) -> Response {
         let (mu, trace) = (self.mu, strain.x + strain.y);
         // λ / (λ + 2μ) = ν / (1 − ν).

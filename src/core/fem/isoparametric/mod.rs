@@ -25,6 +25,7 @@ use crate::Material;
 use crate::elements::kinds::continuum_kind::Parent;
 use crate::fem::element::{self, Previous};
 use crate::fem::material::Response;
+use crate::linalg::vectorise;
 use crate::model::{Law, Update};
 use nalgebra::{Matrix2, Vector3};
 use ring::{Ring, RingTerms};
@@ -72,6 +73,7 @@ pub struct PointState {
 }
 
 /// The gradients at a Gauss point in a given shape.
+#[inline(always)]
 fn gradients<const N: usize>(parent: &Parent<N>, at: &[[f64; 2]; N]) -> Gradients<N> {
     let (inverse, det) = inverse(slope(at, &parent.d));
     let turned = |d: [f64; 2]| {
@@ -87,6 +89,7 @@ fn gradients<const N: usize>(parent: &Parent<N>, at: &[[f64; 2]; N]) -> Gradient
 }
 
 /// The inverse of a matrix, and its determinant.
+#[inline(always)]
 fn inverse(m: [[f64; 2]; 2]) -> ([[f64; 2]; 2], f64) {
     let det = m[0][0] * m[1][1] - m[0][1] * m[1][0];
     let inverse = [
@@ -97,6 +100,7 @@ fn inverse(m: [[f64; 2]; 2]) -> ([[f64; 2]; 2], f64) {
 }
 
 /// H = ∂u/∂X.
+#[inline(always)]
 fn slope<const N: usize>(grad: &[[f64; 2]; N], u: &[[f64; 2]; N]) -> [[f64; 2]; 2] {
     let mut h = [[0.0; 2]; 2];
     for (u, g) in u.iter().zip(grad) {
@@ -132,6 +136,7 @@ pub(super) fn slope_at<const N: usize>(
 }
 
 /// Green-Lagrange strain E11, E22, 2 E12.
+#[inline(always)]
 fn strain(h: &[[f64; 2]; 2]) -> Vector3<f64> {
     Vector3::new(
         h[0][0] + 0.5 * (h[0][0] * h[0][0] + h[1][0] * h[1][0]),
@@ -162,6 +167,7 @@ struct Point<const N: usize> {
 }
 
 /// x and y of each of N nodes.
+#[inline(always)]
 fn pairs<const N: usize>(u: &[f64]) -> [[f64; 2]; N] {
     let mut pairs = [[0.0; 2]; N];
     for (pair, u) in pairs.iter_mut().zip(u.chunks_exact(2)) {
@@ -187,6 +193,7 @@ impl<const N: usize, const P: usize, const HOOP: bool> ContinuumElement<N, P, HO
         }
     }
 
+    #[inline(always)]
     fn reference(&self, past: &Previous<'_>, u: &[f64]) -> Reference<N> {
         let mut reference = Reference {
             at: self.at,
@@ -205,6 +212,7 @@ impl<const N: usize, const P: usize, const HOOP: bool> ContinuumElement<N, P, HO
     }
 
     /// Gauss point p; `None` if the material has no response, or the reference shape is folded.
+    #[inline(always)]
     fn point(&self, reference: &Reference<N>, past: &Previous<'_>, p: usize) -> Option<Point<N>> {
         let Gradients { grad, area } = match self.update {
             Update::Total | Update::Small => self.points[p],
@@ -326,20 +334,16 @@ impl<const N: usize, const P: usize, const HOOP: bool> ContinuumElement<N, P, HO
             (None, _) => self.material.across(&strain(&point.h)) / swelling,
         }
     }
-}
 
-impl<const N: usize, const P: usize, const HOOP: bool> element::Element
-    for ContinuumElement<N, P, HOOP>
-{
-    fn dofs(&self) -> usize {
-        2 * N
-    }
-
-    fn history_len(&self) -> usize {
-        history_len(self.update, P)
-    }
-
-    fn add(&self, past: &Previous<'_>, u: &[f64], force: &mut [f64], tangent: &mut [f64]) -> bool {
+    /// Force, and the upper half of the tangent.
+    #[inline(always)]
+    fn add_all(
+        &self,
+        past: &Previous<'_>,
+        u: &[f64],
+        force: &mut [f64],
+        tangent: &mut [f64],
+    ) -> bool {
         let dofs = 2 * N;
         let reference = self.reference(past, u);
         let mut terms = [Terms::default(); P];
@@ -383,7 +387,9 @@ impl<const N: usize, const P: usize, const HOOP: bool> element::Element
         true
     }
 
-    fn resist(&self, past: &Previous<'_>, u: &[f64], force: &mut [f64], _: &mut [f64]) -> bool {
+    /// The force alone, with the same bits.
+    #[inline(always)]
+    fn add_forces(&self, past: &Previous<'_>, u: &[f64], force: &mut [f64]) -> bool {
         let reference = self.reference(past, u);
         for p in 0..P {
             let Some(point) = self.point(&reference, past, p) else {
@@ -401,6 +407,32 @@ impl<const N: usize, const P: usize, const HOOP: bool> element::Element
             }
         }
         true
+    }
+}
+
+impl<const N: usize, const P: usize, const HOOP: bool> element::Element
+    for ContinuumElement<N, P, HOOP>
+{
+    fn dofs(&self) -> usize {
+        2 * N
+    }
+
+    fn history_len(&self) -> usize {
+        history_len(self.update, P)
+    }
+
+    fn add(&self, past: &Previous<'_>, u: &[f64], force: &mut [f64], tangent: &mut [f64]) -> bool {
+        vectorise(
+            #[inline(always)]
+            || self.add_all(past, u, force, tangent),
+        )
+    }
+
+    fn resist(&self, past: &Previous<'_>, u: &[f64], force: &mut [f64], _: &mut [f64]) -> bool {
+        vectorise(
+            #[inline(always)]
+            || self.add_forces(past, u, force),
+        )
     }
 
     fn advance(&self, past: &Previous<'_>, u: &[f64], history: &mut [f64]) {
@@ -454,6 +486,7 @@ struct Terms {
 
 impl Terms {
     /// Adds Σ_JL N_i,J ∂P_aJ/∂H_cL N_j,L to [a][c][j], where x and y are N_i,J.
+    #[inline(always)]
     fn add_rows<const N: usize>(
         &self,
         [x, y]: [f64; 2],
@@ -474,18 +507,21 @@ impl Terms {
 
 impl<const N: usize> Point<N> {
     /// F.
+    #[inline(always)]
     fn deformation(&self) -> [[f64; 2]; 2] {
         let h = &self.h;
         [[1.0 + h[0][0], h[0][1]], [h[1][0], 1.0 + h[1][1]]]
     }
 
     /// S, times the volume.
+    #[inline(always)]
     fn stress(&self) -> [[f64; 2]; 2] {
         let (v, s) = (self.volume, &self.response.stress);
         [[v * s.x, v * s.z], [v * s.z, v * s.y]]
     }
 
     /// P = F S, times the volume.
+    #[inline(always)]
     fn nominal(&self) -> [[f64; 2]; 2] {
         let s = self.stress();
         self.deformation().map(|f| {
@@ -496,6 +532,7 @@ impl<const N: usize> Point<N> {
         })
     }
 
+    #[inline(always)]
     fn terms(&self) -> Terms {
         let (f, s) = (self.deformation(), self.stress());
         let (v, d) = (self.volume, &self.response.tangent);
