@@ -18,7 +18,6 @@ use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::{Margin, Position, Rect};
 use ratatui::style::{Modifier, Style};
 use ratatui::text::{Line, Span};
-use ratatui::widgets::Widget;
 use std::collections::HashMap;
 use std::f64::consts::FRAC_PI_4;
 use stickslip_core::{BodyKind, Model, PointDeformation};
@@ -489,12 +488,10 @@ fn caption(buffer: &mut Buffer, inner: Rect, shown: Scales, moves: bool, app: &A
     if let Some(first) = line.spans.first_mut() {
         first.content = format!(" {}", first.content.trim_start()).into();
     }
-    line.render(
-        Rect {
-            y: inner.bottom() - 1,
-            height: 1,
-            ..inner
-        },
-        buffer,
-    );
+    let last = Rect {
+        y: inner.bottom() - 1,
+        height: 1,
+        ..inner
+    };
+    paint::lines(buffer, last, &[line]);
 }
