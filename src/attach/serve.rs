@@ -14,13 +14,14 @@ use stickslip_exchange::attach::message::{
 };
 use stickslip_exchange::attach::{Answer, Line, LineReader, MOST_BYTES, PROTOCOLS, Request};
 use stickslip_scene::Scene;
+use stickslip_scene::format::error::{quoted, shortened};
 use stickslip_scene::format::paths;
 use stickslip_scene::solver::solver;
 
 /// Answers requests line by line until the input ends.
 ///
 /// # Errors
-/// If the streams cannot be read or written.
+/// If the streams cannot be read or written; of kind `InvalidData` if the input ends within a line, or a line is too long.
 pub fn serve(scene: &Scene, from: impl BufRead, mut to: impl Write) -> io::Result<()> {
     let mut server = Server::new(scene);
     let mut lines = LineReader::new(from, MOST_BYTES);
@@ -28,7 +29,9 @@ pub fn serve(scene: &Scene, from: impl BufRead, mut to: impl Write) -> io::Resul
         let request = match lines.next_line()? {
             Line::Text(text) => Request::read(&text).map_err(|broken| broken.to_string()),
             Line::NoText(_) => Err("not UTF-8".to_owned()),
-            Line::TooLong(_) | Line::Torn(_) | Line::End => return Ok(()),
+            Line::End => return Ok(()),
+            Line::Torn(_) => return Err(unusable("the input ends within a request")),
+            Line::TooLong(_) => return Err(unusable("a request is longer than 64 MiB")),
         };
         let answer = match request {
             Ok(Request::Bye) => return Ok(()),
@@ -39,6 +42,11 @@ pub fn serve(scene: &Scene, from: impl BufRead, mut to: impl Write) -> io::Resul
         to.write_all(answer.line().as_bytes())?;
         to.flush()?;
     }
+}
+
+/// The error of an input that cannot be read further.
+fn unusable(why: &str) -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidData, why)
 }
 
 fn refused(reason: impl Into<String>) -> Answer {
@@ -95,7 +103,7 @@ impl<'a> Server<'a> {
                         self.stepper.restore(state);
                         Answer::Ok
                     }
-                    None => refused(format!("no saved state {token}")),
+                    None => refused(format!("no saved state {}", shortened(&token.to_string()))),
                 }
             }
             Request::Problem => self.problem(),
@@ -143,7 +151,7 @@ impl<'a> Server<'a> {
     fn on_contact(&mut self, id: &Id, what: impl FnOnce(usize) -> Intervention) -> Answer {
         match wire::contact(id, self.stepper.model()) {
             Some(slave) => self.intervene(&what(slave)),
-            None => refused(format!("no contact {id}")),
+            None => refused(format!("no contact {}", shortened(&id.to_string()))),
         }
     }
 
@@ -163,6 +171,7 @@ impl<'a> Server<'a> {
                 if value.is_number() {
                     Ok(orders::set(name, value, now))
                 } else {
+                    let value = shortened(&value.to_string());
                     Err(format!("{name} must be a number, not {value}"))
                 }
             }
@@ -178,7 +187,7 @@ impl<'a> Server<'a> {
                 paths::set(&mut spec, path, &word).map_err(|why| why.to_string())?;
                 Ok(Intervention::Settings(spec.settings))
             }
-            _ => Err(format!("no parameter {name}")),
+            _ => Err(format!("no parameter {}", quoted(name))),
         }
     }
 

@@ -17,11 +17,11 @@ use stickslip_study::{Vary, precision_figure};
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
-Scenes 01 to 05 and osc-inclined-cantilever have predefined charts (problems/charts): meshes, increments,
+Scenes 01 to 05 and osc-inclined-cantilever have predefined charts (problems/charts): meshes, increments, \
 element orders, settings. Other scenes are run with several meshes, increments and both kinds of T_max.
 
-Runs that fail are results, drawn in a row at the top of the picture. The exit code is 0 if the chart is
-complete, 2 for bad input or usage, 4 if runs are missing to --merge, 75 if a log is busy or cannot be written,
+Runs that fail are results, drawn in a row at the top of the picture. The exit code is 0 if the chart is \
+complete, 2 for bad input or usage, 4 if runs are missing to --merge, 75 if a log is busy or cannot be written, \
 and 130 if interrupted; files then contain the finished runs.")]
 pub struct Args {
     /// Scene files, or names of built-in scenes

@@ -18,11 +18,11 @@ use stickslip_study::{Plan, Study, Vary, verdict_figure};
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
-Values of --over may be a range, 0.01..0.1/4 (evenly spaced) or 0.01..0.1/4log (even ratios), or a multiple
+Values of --over may be a range, 0.01..0.1/4 (evenly spaced) or 0.01..0.1/4log (even ratios), or a multiple \
 of the scene's value, 2x. Without --over and --strategies, scenes are run with all strategies.
 
-Cells that fail are results. The exit code is 0 if the map is complete, 2 for bad input or usage, 4 if cells are
-missing to --merge, 75 if a log is busy or cannot be written, and 130 if interrupted; files then contain
+Cells that fail are results. The exit code is 0 if the map is complete, 2 for bad input or usage, 4 if cells are \
+missing to --merge, 75 if a log is busy or cannot be written, and 130 if interrupted; files then contain \
 the finished cells.")]
 pub struct Args {
     /// Scene files, or names of built-in scenes; all: every built-in scene

@@ -1,6 +1,6 @@
 //! `stickslip serve`: makes stickslip's own solver attachable, over standard input and output.
 
-use super::base::{Error, Exit, SceneArgs};
+use super::base::{Error, Exit, SceneArgs, usage};
 use std::io;
 use stickslip_attach::serve::serve;
 
@@ -13,6 +13,9 @@ pub struct Args {
 pub fn main(args: &Args) -> Result<Exit, Error> {
     let scene = args.scene.open()?;
     match serve(&scene, io::stdin().lock(), io::stdout().lock()) {
+        Err(error) if error.kind() == io::ErrorKind::InvalidData => {
+            Err(usage!("standard input: {error}"))
+        }
         // The debugger may close the connection.
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Error::Output(error)),
         _ => Ok(Exit::Good),

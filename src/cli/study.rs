@@ -14,17 +14,17 @@ const MONITORS: usize = 2;
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
-A study file is RON, (title: \"...\", scene: \"...\", vary: [(\"history.increment\", [0.01, 0.02])],
-set: [...], x: \"u_x\", y: \"load\", about: \"...\"). Built-in studies: fig-08-increment, fig-09-majors,
-fig-10-minors, fig-11-roles (the paper's), geometry-01, geometry-02, limit-point-02, residual-methods,
+A study file is RON, (title: \"...\", scene: \"...\", vary: [(\"history.increment\", [0.01, 0.02])], \
+set: [...], x: \"u_x\", y: \"load\", about: \"...\"). Built-in studies: fig-08-increment, fig-09-majors, \
+fig-10-minors, fig-11-roles (the paper's), geometry-01, geometry-02, limit-point-02, residual-methods, \
 t-max-friction and t-max-osc.
 
-benchmarks is a list of scenes with published reference values. A benchmark file is RON,
-(title: \"...\", benchmarks: [(scene: \"...\", what: \"...\", of: \"MONITOR\", source: \"...\", value: 1.0,
+benchmarks is a list of scenes with published reference values. A benchmark file is RON, \
+(title: \"...\", benchmarks: [(scene: \"...\", what: \"...\", of: \"MONITOR\", source: \"...\", value: 1.0, \
 within: 0.01)]). Exit code 1 if one fails.
 
-Runs that fail are results. The exit code is 0 if the study is complete, 2 for bad input or usage, 4 if runs
-are missing to --merge, 75 if a log is busy or cannot be written, and 130 if interrupted; files then
+Runs that fail are results. The exit code is 0 if the study is complete, 2 for bad input or usage, 4 if runs \
+are missing to --merge, 75 if a log is busy or cannot be written, and 130 if interrupted; files then \
 contain the finished runs.")]
 pub struct Args {
     /// A study or a scene: a file, or a built-in name
@@ -102,6 +102,9 @@ fn plan(args: &Args) -> Result<Plan, Error> {
         study.vary(vary.clone());
     }
     study.set.extend(args.set.set.iter().cloned());
+    if args.x.is_some() || args.y.is_some() {
+        study.text.clear();
+    }
     if let Some(x) = &args.x {
         study.x = Some(AxisQuantity::named(x));
     }

@@ -58,6 +58,9 @@ pub struct Benchmarks {
     /// Path of the file, or [`BUILTIN`].
     #[serde(skip)]
     pub name: String,
+    /// The text of the file, where errors have a line.
+    #[serde(skip)]
+    text: String,
     /// Title.
     pub title: String,
     /// What the list shows, for the reader.
@@ -156,12 +159,9 @@ impl Benchmarks {
             return Ok(None);
         }
         let mut list = Benchmarks::from_text(name, &text)?;
-        for (k, benchmark) in list.list.iter_mut().enumerate() {
-            benchmark.scene =
-                Scene::named_in(name, &benchmark.scene).map_err(|why| SceneError {
-                    path: format!("benchmarks[{k}].scene"),
-                    ..SceneError::whole(name, why)
-                })?;
+        for k in 0..list.list.len() {
+            list.list[k].scene = Scene::named_in(name, &list.list[k].scene)
+                .map_err(|why| list.fault(k, "scene", why))?;
         }
         Ok(Some(list))
     }
@@ -171,18 +171,24 @@ impl Benchmarks {
     /// # Errors If it cannot be read, with line and column, or is inconsistent.
     pub fn from_text(name: &str, text: &str) -> Result<Benchmarks, SceneError> {
         let mut list: Benchmarks = from_ron(name, text, "list of benchmarks")?;
-        list.name = name.to_owned();
+        (list.name, list.text) = (name.to_owned(), text.to_owned());
         for (k, benchmark) in list.list.iter().enumerate() {
-            benchmark.check().map_err(|(field, message)| SceneError {
-                at: Some(line_and_column(
-                    text,
-                    locate(text, &at!["benchmarks", k, field]).start,
-                )),
-                path: format!("benchmarks[{k}].{field}"),
-                ..SceneError::whole(name, message)
-            })?;
+            benchmark
+                .check()
+                .map_err(|(field, message)| list.fault(k, field, message))?;
         }
         Ok(list)
+    }
+
+    /// An error at a field of the k-th benchmark.
+    fn fault(&self, k: usize, field: &str, message: String) -> SceneError {
+        let path = at!["benchmarks", k, field];
+        let start = locate(&self.text, &path).start;
+        SceneError {
+            at: Some(line_and_column(&self.text, start)),
+            path: path.to_string(),
+            ..SceneError::whole(&self.name, message)
+        }
     }
 
     /// Runs each combination of scene and settings once, and compares the results.
@@ -196,17 +202,22 @@ impl Benchmarks {
     ) -> Result<Vec<ComparedBenchmark>, RunError> {
         let mut posed: Vec<(&Benchmark, Scene)> = Vec::new();
         let mut of = Vec::with_capacity(self.list.len());
-        for benchmark in &self.list {
+        for (k, benchmark) in self.list.iter().enumerate() {
             let place = match posed.iter().position(|(other, _)| {
                 (&other.scene, &other.set) == (&benchmark.scene, &benchmark.set)
             }) {
                 Some(place) => place,
                 None => {
-                    posed.push((benchmark, Scene::open(&benchmark.scene, &benchmark.set)?));
+                    let scene = Scene::open(&benchmark.scene, &benchmark.set);
+                    let scene = scene.map_err(|error| match error.set {
+                        Some(_) => self.fault(k, "set", error.message),
+                        None => error,
+                    })?;
+                    posed.push((benchmark, scene));
                     posed.len() - 1
                 }
             };
-            self.check_monitors(benchmark, &posed[place].1)?;
+            self.check_monitors(k, benchmark, &posed[place].1)?;
             of.push(place);
         }
         let spare = SolverPool::default();
@@ -223,21 +234,27 @@ impl Benchmarks {
             .collect())
     }
 
-    fn check_monitors(&self, benchmark: &Benchmark, scene: &Scene) -> Result<(), SceneError> {
+    fn check_monitors(
+        &self,
+        k: usize,
+        benchmark: &Benchmark,
+        scene: &Scene,
+    ) -> Result<(), SceneError> {
         let names = || scene.model.monitors.iter().map(|m| m.name.as_str());
-        for wanted in [Some(&benchmark.of), benchmark.over.as_ref()] {
+        for (field, wanted) in [
+            ("of", Some(&benchmark.of)),
+            ("over", benchmark.over.as_ref()),
+        ] {
             let Some(wanted) = wanted.filter(|wanted| !names().any(|own| own == *wanted)) else {
                 continue;
             };
-            return Err(SceneError::whole(
-                &self.name,
-                format!(
-                    "scene {} has no monitor {wanted:?}{} (monitors: {})",
-                    benchmark.scene,
-                    did_you_mean(wanted, names()),
-                    joined(names(), ", ")
-                ),
-            ));
+            let message = format!(
+                "scene {} has no monitor {wanted:?}{} (monitors: {})",
+                benchmark.scene,
+                did_you_mean(wanted, names()),
+                joined(names(), ", ")
+            );
+            return Err(self.fault(k, field, message));
         }
         Ok(())
     }

@@ -7,7 +7,7 @@ use super::sweep_input::digest;
 use std::sync::Arc;
 use stickslip_core::Model;
 use stickslip_scene::base::{Base, ScalarLocation};
-use stickslip_scene::format::error::{did_you_mean, some_of};
+use stickslip_scene::format::error::{Path, at, did_you_mean, shortened, some_of};
 use stickslip_scene::format::paths::{self, ListedScalar};
 use stickslip_scene::{Scene, SceneError, increments};
 
@@ -153,8 +153,8 @@ impl Plan {
             (None, Some(first)) => AxisQuantity::Monitor(first.clone()),
             (None, None) => AxisQuantity::Increment,
         };
-        for axis in [&plan.x, &plan.y] {
-            plan.check_axis(axis)?;
+        for (axis, field) in [(&plan.x, "x"), (&plan.y, "y")] {
+            plan.check_axis(axis, field)?;
         }
         Ok(plan)
     }
@@ -252,7 +252,16 @@ impl Plan {
                 values: scene.into_iter().chain(given.split_off(fixed)).collect(),
                 increments: 0,
             };
-            let names = case.check()?;
+            let names = case.check().map_err(|error| {
+                let blamed = set.iter().zip(&case.set).find(|((path, _), value)| {
+                    let set = shortened(&format!("{path}={value}"));
+                    error.set.as_ref() == Some(&set)
+                });
+                match blamed {
+                    Some(((_, k), _)) => study.setting_fault(*k, error),
+                    None => error,
+                }
+            })?;
             for name in names.as_ref().unwrap_or(&own) {
                 if !self.monitors.contains(name) {
                     self.monitors.push(name.clone());
@@ -263,7 +272,7 @@ impl Plan {
         Ok(())
     }
 
-    fn check_axis(&self, axis: &AxisQuantity) -> Result<(), SceneError> {
+    fn check_axis(&self, axis: &AxisQuantity, field: &str) -> Result<(), SceneError> {
         let AxisQuantity::Monitor(name) = axis else {
             return Ok(());
         };
@@ -281,7 +290,7 @@ impl Plan {
             did_you_mean(name, known()),
             some_of(known())
         );
-        Err(SceneError::whole(&self.study.name, message))
+        Err(self.study.fault(&at![field], message))
     }
 }
 
@@ -307,25 +316,27 @@ fn check_values(study: &mut Study) -> Result<(), SceneError> {
             *path = paths::whole(&spec, path);
         }
     }
-    let wrong = |message: String| Err(SceneError::whole(&study.name, message));
+    let wrong = |at: Path, message: String| Err(study.fault(&at, message));
     let mut cases = study.scenes.len() as u64;
     for (k, vary) in study.vary.iter().enumerate() {
         let Vary { path, values } = vary;
         if study.vary[..k].iter().any(|other| other.path == *path) {
-            return wrong(format!("{path} is varied twice"));
+            return wrong(at!["vary", k], format!("{path} is varied twice"));
         }
         if values.is_empty() {
-            return wrong(format!("{path} has no values to vary over"));
+            return wrong(at!["vary", k], format!("{path} has no values to vary over"));
         }
         if let Some(value) = (1..values.len()).find(|&j| values[..j].contains(&values[j])) {
-            return wrong(format!("{path} has the value {} twice", values[value]));
+            let at = at!["vary", k, 1, value];
+            return wrong(at, format!("{path} has the value {} twice", values[value]));
         }
         cases = cases.saturating_mul(values.len() as u64);
     }
     if cases > MOST_CASES {
-        return wrong(format!(
-            "the study has {cases} runs; the limit is {MOST_CASES} (`help cluster`)"
-        ));
+        return wrong(
+            at!["vary"],
+            format!("the study has {cases} runs; the limit is {MOST_CASES} (`help cluster`)"),
+        );
     }
     Ok(())
 }

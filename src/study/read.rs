@@ -18,8 +18,8 @@ use super::builtin;
 use serde::Deserialize;
 use serde::de::{Deserializer, Visitor};
 use std::fmt;
-use stickslip_scene::format::error::{Path, Step, did_you_mean};
-use stickslip_scene::format::locate::{locate, too_deep};
+use stickslip_scene::format::error::{Path, at, did_you_mean};
+use stickslip_scene::format::locate::{line_and_column, locate, too_deep};
 use stickslip_scene::format::read::{text, value};
 use stickslip_scene::readers::or_mistaken;
 use stickslip_scene::{FileKind, Scene, SceneError};
@@ -43,6 +43,8 @@ pub struct Study {
     pub x: Option<AxisQuantity>,
     /// Vertical axis; `None` for the load factor.
     pub y: Option<AxisQuantity>,
+    /// The text of its file, where errors have a line; empty if there is none, or a value of the file was replaced.
+    pub text: String,
 }
 
 /// One setting and the values that it takes.
@@ -201,20 +203,9 @@ impl Study {
     /// # Errors
     /// If it cannot be read, with line and column.
     pub fn from_text(name: &str, text: &str) -> Result<Study, SceneError> {
-        let mut file: StudyFile = value(name, text, "study")
+        let file: StudyFile = value(name, text, "study")
             .map_err(|error| or_mistaken(error, name, text, FileKind::Study))?;
-        if file.scene.is_some() && !file.scenes.is_empty() {
-            let twice = "a study needs either scene or scenes, not both";
-            return Err(SceneError::whole(name, twice));
-        }
-        if let Some(scene) = file.scene.take() {
-            file.scenes.insert(0, scene);
-        }
-        if file.scenes.is_empty() {
-            let message = "a study needs a scene: \"NAME\", or scenes: [\"NAME\", \"NAME\"]";
-            return Err(SceneError::whole(name, message));
-        }
-        Ok(Study {
+        let mut study = Study {
             name: name.to_owned(),
             title: file.title,
             about: file.about,
@@ -223,23 +214,78 @@ impl Study {
             set: file.set,
             x: file.x.as_deref().map(AxisQuantity::named),
             y: file.y.as_deref().map(AxisQuantity::named),
-        })
+            text: text.to_owned(),
+        };
+        if file.scene.is_some() && !study.scenes.is_empty() {
+            let twice = "a study needs either scene or scenes, not both";
+            return Err(study.fault(&at!["scenes"], twice));
+        }
+        study.scenes.extend(file.scene);
+        if study.scenes.is_empty() {
+            let message = "a study needs a scene: \"NAME\", or scenes: [\"NAME\", \"NAME\"]";
+            return Err(study.fault(&at![], message));
+        }
+        Ok(study)
+    }
+
+    /// An error at a value of the file; without a line if the value is not from there.
+    pub(super) fn fault(&self, at: &Path, message: impl Into<String>) -> SceneError {
+        let place = locate(&self.text, at);
+        let mut around = at.clone();
+        // A value that the file does not contain has the place of the one around it.
+        let is_there = around.0.pop().is_none() || locate(&self.text, &around) != place;
+        let whole = SceneError::whole(&self.name, message);
+        if !is_there || self.text.is_empty() {
+            return whole;
+        }
+        SceneError {
+            at: Some(line_and_column(&self.text, place.start)),
+            path: at.to_string(),
+            ..whole
+        }
+    }
+
+    /// The error of a scene about the k-th setting, of `set` and then `vary`, at its place in the file.
+    pub(super) fn setting_fault(&self, k: usize, error: SceneError) -> SceneError {
+        let at = match k.checked_sub(self.set.len()) {
+            None => at!["set", k],
+            Some(k) => at!["vary", k],
+        };
+        let message = match self.scenes.len() {
+            1 => error.message.clone(),
+            _ => format!("in {}: {}", error.file, error.message),
+        };
+        let fault = self.fault(&at, message);
+        if fault.at.is_some() { fault } else { error }
     }
 
     /// Varies another setting, or replaces its values.
     pub fn vary(&mut self, vary: Vary) {
         match self.vary.iter_mut().find(|old| old.path == vary.path) {
-            Some(old) => *old = vary,
+            Some(old) => {
+                *old = vary;
+                self.text.clear();
+            }
             None => self.vary.push(vary),
         }
     }
 
     /// The study of a file; [`Scene::named_in`] opens its scenes.
     fn open_scenes(mut self, file: &str) -> Result<Study, SceneError> {
-        for scene in &mut self.scenes {
-            *scene = Scene::named_in(file, scene).map_err(|why| SceneError::whole(file, why))?;
+        for k in 0..self.scenes.len() {
+            self.scenes[k] = Scene::named_in(file, &self.scenes[k])
+                .map_err(|why| self.fault(&self.scene_at(k), why))?;
         }
         Ok(self)
+    }
+
+    /// Where the file names its k-th scene.
+    fn scene_at(&self, k: usize) -> Path {
+        let whole = locate(&self.text, &at![]);
+        match locate(&self.text, &at!["scene"]) == whole {
+            true => at!["scenes", k],
+            false => at!["scene"],
+        }
     }
 }
 
@@ -332,7 +378,7 @@ fn is_study(text: &str) -> bool {
     let whole = locate(text, &Path::default());
     ["scene", "scenes", "vary"]
         .iter()
-        .any(|field| locate(text, &Path(vec![Step::from(*field)])) != whole)
+        .any(|field| locate(text, &at![*field]) != whole)
 }
 
 fn nothing_there(name: &str) -> String {

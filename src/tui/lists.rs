@@ -132,6 +132,30 @@ impl App {
         None
     }
 
+    /// What Enter does in the focused list: the label of its key, or another word; `None` if there is nothing to take.
+    pub(super) fn enter_label<'a>(&self, label: &'a str, view: Option<&View>) -> Option<&'a str> {
+        let Some(view) = view else {
+            return Some(label);
+        };
+        match self.panes.focus {
+            Diagnosis => {
+                let Some(found) = view.examination() else {
+                    return Some("analyse");
+                };
+                let page = found?;
+                let (choices, all) = (choices(page), choices(page) + page.below.len());
+                match self.answer.min(all.saturating_sub(1)) {
+                    at if at < choices => Some(label),
+                    _ if all > choices => Some("fold"),
+                    _ => None,
+                }
+            }
+            Remedies if !view.has_tried() => Some("try all"),
+            Remedies => (!view.trials().is_empty()).then_some(label),
+            _ => Some(label),
+        }
+    }
+
     /// Enter in the remedies: applies the selected one, or tries all if there is no result yet.
     pub(super) fn take_remedy(&mut self, view: Option<&View>) -> Option<Effect> {
         if view.is_some_and(View::has_tried) {

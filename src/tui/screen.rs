@@ -4,6 +4,7 @@ use crate::app::{App, Overlay};
 use crate::canvas;
 use crate::chooser_state::Preview;
 use crate::layout::{self, Choice, Pane, ScreenAreas};
+use crate::paint;
 use crate::pane_entry::frame;
 use crate::panes::chooser;
 use crate::panes::entry;
@@ -19,8 +20,6 @@ use crate::theme::Theme;
 use crate::view::View;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
-use ratatui::text::Line;
-use ratatui::widgets::Widget;
 use stickslip_debugger::Session;
 use stickslip_debugger::action::Filter;
 use stickslip_scene::shown;
@@ -127,8 +126,7 @@ pub fn is_hidden(pane: Pane, app: &App, view: &View) -> bool {
 fn draw_pane(pane: Pane, buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     if is_hidden(pane, app, view) {
         let inner = frame(buffer, area, pane, "Hidden", app);
-        let text = " until you predict what follows";
-        Line::styled(text, app.theme.faint).render(inner, buffer);
+        paint::note(buffer, inner, "until you predict what follows", &app.theme);
         return;
     }
     (entry(pane).draw)(buffer, area, app, view);

@@ -243,7 +243,8 @@ impl<'a> View<'a> {
 
     /// Whether a value is shown as a dash.
     fn is_absent(&self, value: f64) -> bool {
-        self.attached.is_some() && (value.is_nan() || value == f64::INFINITY)
+        // A node off all surfaces has an infinite gap.
+        value == f64::INFINITY || self.is_unreported(value)
     }
 
     /// A value as a table cell ([`number::fixed_width`]); a dash if an attached solver does not report it.
@@ -306,6 +307,7 @@ pub fn context<'a>(view: Option<&View<'a>>, selected: usize, scenes: &'a [String
             .and_then(|view| view.attached)
             .map(|attached| attached.offers),
         state: view.map(|view| &view.frame().state),
+        next: view.and_then(|view| view.frames.get(view.cursor + 1)),
         scenes,
         lessons: teach::list(),
         keymap: None,

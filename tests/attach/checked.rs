@@ -125,11 +125,7 @@ const WRONGS: &[(&str, &str, &str)] = &[
         "problem",
         "the diagonal is negative at contact a along n",
     ),
-    (
-        "problem-null",
-        "problem",
-        "matrix[0][1]: invalid type: null",
-    ),
+    ("problem-null", "problem", "matrix[0][1]: null is not valid"),
     ("load-drifts", "order", "in the same attempt"),
     ("deaf-to-bye", "bye", "does not end"),
 ];

@@ -83,12 +83,12 @@ const FAULTS: &[(&str, bool, &str)] = &[
     (
         "null",
         false,
-        "at.increment: invalid type: null, expected u32",
+        "at.increment: null is not valid; expected a whole number from 0",
     ),
     (
         "word",
         false,
-        r#"contacts[1].f_n: invalid type: string "much", expected f64"#,
+        r#"contacts[1].f_n: "much" is not valid; expected a number"#,
     ),
     (
         "mode",

@@ -5,6 +5,7 @@ use super::program::{code, err, out, program, well};
 use super::side::{PATIENT, back, does, force, forward, own};
 use libtest_mimic::Trial;
 use std::path::Path;
+use stickslip::attach::serve::serve;
 use stickslip::attach::{Attached, Start};
 use stickslip::history::frame::Frame;
 use stickslip::history::verdicts::summaries;
@@ -26,6 +27,8 @@ pub fn tests() -> Vec<Trial> {
         a_journal_leads_to_the_same_bits_against_the_solver_and_to_others_against_another,
         who_pushed_a_contact_is_told_as_of_the_scene_itself,
         a_lagged_t_max_is_inferred_from_the_iterations_of_a_solver,
+        an_input_that_ends_within_a_request_or_is_too_long_is_an_error,
+        answers_repeat_no_long_text,
         without_a_rule_that_reproduces_the_solver_neither_cause_nor_pushes_are_given,
     ]
 }
@@ -35,6 +38,44 @@ const SLOW: &[&str] = &["bench-belt", "bench-mindlin", "bench-ssnv128"];
 
 pub fn stickslip() -> &'static str {
     env!("CARGO_BIN_EXE_stickslip")
+}
+
+fn an_input_that_ends_within_a_request_or_is_too_long_is_an_error() {
+    use std::io::{BufReader, Read, repeat};
+    let scene = scene("osc-two6", &[]);
+    let torn = serve(&scene, &b"{\"type\":\"step\"}\n{\"type\""[..], Vec::new());
+    assert_eq!(
+        torn.unwrap_err().to_string(),
+        "the input ends within a request"
+    );
+    let long = BufReader::new(repeat(b'x').take(65 << 20));
+    let long = serve(&scene, long, Vec::new()).unwrap_err();
+    assert_eq!(long.to_string(), "a request is longer than 64 MiB");
+}
+
+fn answers_repeat_no_long_text() {
+    let long = "9".repeat(20_000);
+    let requests = [
+        format!(r#"{{"type":"set","name":"{long}","value":1}}"#),
+        format!(r#"{{"type":"set","name":"increment","value":"{long}"}}"#),
+        format!(r#"{{"type":"release","contact":"{long}"}}"#),
+        format!(r#"{{"type":"restore","token":"{long}"}}"#),
+        format!(r#"{{"type":"{long}"}}"#),
+        format!(r#"{{"type":"force","contact":0,"mode":"{long}"}}"#),
+    ];
+    let mut answers = Vec::new();
+    serve(
+        &scene("osc-two6", &[]),
+        requests.join("\n").as_bytes(),
+        &mut answers,
+    )
+    .unwrap_err();
+    let answers = String::from_utf8(answers).unwrap();
+    assert_eq!(answers.lines().count(), requests.len() - 1);
+    assert!(
+        answers.lines().all(|line| line.len() < 500),
+        "{answers:.2000}"
+    );
 }
 
 fn every_quick_scene_writes_the_same_trace_and_table() {

@@ -56,7 +56,9 @@ fn what_a_list_asks_for_and_no_scene_has_is_refused() {
     assert_eq!(code(&wrong), 2);
     let told = err(&wrong);
     assert!(
-        told.contains("a.ron: scene bench-pad has no monitor \"allong\"; did you mean \"along\"?"),
+        told.contains(
+            ": benchmarks[0].of: scene bench-pad has no monitor \"allong\"; did you mean \"along\"?"
+        ),
         "{told}"
     );
     fs::write(directory.path().join("a.ron"), list("inf", "along")).unwrap();

@@ -493,3 +493,108 @@ fn ctrl_c_ends_a_study_with_130_and_whole_files_of_what_is_done() {
     let svg = std::fs::read_to_string(directory.path().join("a.svg")).unwrap();
     assert!(svg.trim_end().ends_with("</svg>") && svg.contains("interrupted"));
 }
+
+#[test]
+fn faults_of_a_study_have_their_place_in_its_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let sound = r#"(
+    title: "Two nodes",
+    scenes: ["osc-two6", "osc-two3"],
+    set: [("settings.strategy", "table2")],
+    vary: [
+        ("friction.angle", [20.0, 30.0]),
+        ("settings.slip", ["increment", "major"]),
+    ],
+    x: "load",
+    y: "majors",
+)"#;
+    let fault = |that: &str, this: &str, more: &[&str]| {
+        let text = sound.replacen(that, this, 1);
+        assert_ne!(text, sound);
+        std::fs::write(folder.path().join("s.ron"), text).unwrap();
+        let output = ran_in(folder.path(), &[&["s.ron"], more].concat());
+        assert_eq!(code(&output), 2);
+        err(&output).trim().to_owned()
+    };
+    for (that, this, told) in [
+        (
+            "\"table2\"",
+            "\"table3\"",
+            "s.ron:4:11: set[0]: in osc-two6: \"table3\" is not valid",
+        ),
+        (
+            "settings.strategy",
+            "settings.strateg",
+            "s.ron:4:11: set[0]: in osc-two6: the scene has no value",
+        ),
+        ("30.0", "95.0", "s.ron:6:9: vary[0]: in osc-two6: "),
+        (
+            "30.0",
+            "20.0",
+            "s.ron:6:35: vary[0][1][1]: friction.angle has the value 20.0 twice",
+        ),
+        (
+            "settings.slip",
+            "friction.angle",
+            "s.ron:7:9: vary[1]: friction.angle is varied twice",
+        ),
+        (
+            "[\"increment\", \"major\"]",
+            "[]",
+            "s.ron:7:9: vary[1]: settings.slip has no values",
+        ),
+        (
+            "\"load\"",
+            "\"lode\"",
+            "s.ron:9:8: x: unknown quantity \"lode\"",
+        ),
+        ("\"majors\"", "\"major\"", "s.ron:10:8: y: unknown quantity"),
+        (
+            "\"osc-two3\"",
+            "\"osc-two\"",
+            "s.ron:3:26: scenes[1]: no scene \"osc-two\"",
+        ),
+        (
+            "scenes: [\"osc-two6\", \"osc-two3\"]",
+            "scene: \"osc\"",
+            "s.ron:3:12: scene: no scene \"osc\"",
+        ),
+        (
+            "scenes",
+            "scene: \"osc-two6\", scenes",
+            "s.ron:3:32: scenes: a study needs either",
+        ),
+        (
+            "(\"settings.strategy\", \"table2\")",
+            "(\"settings.strategy\",)",
+            "s.ron:4:11: set[0]",
+        ),
+    ] {
+        let found = fault(that, this, &[]);
+        assert!(found.starts_with(told), "{told}: {found}");
+        assert!(!found.contains("two numbers"), "{found}");
+    }
+    // A value of the command line has no place in the file.
+    let found = fault("30.0", "35.0", &["--x", "lode"]);
+    assert!(found.starts_with("s.ron: unknown quantity"), "{found}");
+    let found = fault("30.0", "35.0", &["--set", "settings.slip=x"]);
+    assert!(
+        found.starts_with("osc-two6: --set settings.slip=x: "),
+        "{found}"
+    );
+}
+
+#[test]
+fn paragraphs_below_the_options_fill_the_lines_of_the_terminal() {
+    for command in ["study", "map", "chart"] {
+        let output = program(&std::env::temp_dir(), &[command, "--help"])
+            .output()
+            .unwrap();
+        let text = out(&output);
+        let end = text.split("Options:").nth(1).unwrap();
+        let paragraph = end.split("\n\n").last().unwrap();
+        let lines: Vec<&str> = paragraph.trim_end().lines().collect();
+        let (_, full) = lines.split_last().unwrap();
+        assert!(full.iter().all(|line| line.len() > 80), "{paragraph}");
+    }
+}

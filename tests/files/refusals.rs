@@ -438,6 +438,49 @@ fn a_snapshot_whose_scene_is_invalid_is_refused_with_the_place_in_its_file() {
 }
 
 #[test]
+fn damaged_snapshots_and_lessons_are_refused_without_types_of_the_program() {
+    let directory = tempfile::tempdir().unwrap();
+    let sound = include_str!("../../snapshots/osc-tip-forced-to-sliding.ron");
+    for (that, this, told) in [
+        (
+            "Beam(",
+            "Beem(",
+            "\"Beem\" is not one of the choices; did you mean \"Beam\"? (choices: Beam",
+        ),
+        (
+            "along:",
+            "along_:",
+            "unknown field \"along_\"; did you mean \"along\"? (fields: ",
+        ),
+        ("from: (", "from: ((", "expected a number"),
+    ] {
+        let damaged = sound.replacen(that, this, 1);
+        assert_ne!(damaged, sound, "{that}");
+        put(&directory, "s.ron", &damaged);
+        for command in ["replay", "audit"] {
+            let found = refusal(&directory, &[command, "s.ron"]);
+            assert!(found.contains(told), "{told}: {found}");
+            assert!(found.starts_with("s.ron:"), "{found}");
+        }
+    }
+    let press = |field: &str| {
+        let lesson = format!(
+            "(\n title: \"T\",\n scene: Name(\"osc-two6\"),\n steps: [\n  Press({field}: \"A\", press: \"s\"),\n ],\n)\n"
+        );
+        put(&directory, "l.ron", &lesson);
+        refusal(&directory, &["lesson", "--check", "l.ron"])
+    };
+    for field in ["", "3"] {
+        let found = press(field);
+        assert!(found.starts_with("l.ron:5:9: "), "{found}");
+        assert!(
+            found.contains("field") && !found.contains("Press"),
+            "{found}"
+        );
+    }
+}
+
+#[test]
 fn a_mesh_that_no_scene_can_have_is_refused_under_its_own_name() {
     let directory = tempfile::tempdir().unwrap();
     let sound = include_str!("../meshes/text22.msh");

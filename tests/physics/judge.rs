@@ -708,3 +708,34 @@ fn a_tied_node_may_be_pulled_and_may_not_stray() {
     assert_eq!(to([1.001, 0.0], [3.0, -7.0]), [JudgedLaw::Tied]);
     assert_eq!(to([1.0, 0.001], [0.0, 0.0]), [JudgedLaw::Tied]);
 }
+
+/// A strip whose lower half has small displacements: its forces balance on the undeformed shape, those of the upper half on the
+/// deformed one, so that the moments of the whole balance on neither.
+#[test]
+fn moments_are_not_checked_on_a_body_of_small_and_large_displacements() {
+    let scene = |lower: &str| {
+        let text = format!(
+            r#"(
+                title: "A strip of two layers",
+                nodes: [Block(id: "strip", corners: [(0.0, 0.0), (4.0, 1.0)], elements: (4, 2))],
+                materials: [
+                    Elastic(id: "lower", E: 100.0, nu: 0.3, update: {lower}),
+                    Elastic(id: "upper", E: 100.0, nu: 0.3),
+                ],
+                bodies: [Solid(
+                    id: "strip", mesh: "strip", material: "lower",
+                    regions: [(from: (0.0, 0.5), to: (4.0, 1.0), material: "upper")],
+                )],
+                supports: [(node: "strip.left", fix: [x, y])],
+                loads: [Force(node: "strip.right.5", y: -0.2)],
+                history: (path: [0.0, 1.0], increment: 0.5),
+            )"#
+        );
+        Scene::from_text("strip.ron", &text, &[]).unwrap()
+    };
+    for lower in ["small", "total"] {
+        let (stepper, refused, failure) = open(scene(lower));
+        assert_eq!((refused, failure), (vec![], None), "{lower}");
+        assert_eq!(stepper.state().load_factor, 1.0);
+    }
+}

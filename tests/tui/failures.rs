@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use stickslip::contact::laws::{Finding, JudgedLaw, JudgedNumbers};
 use stickslip::explain::page::{DiagnosisPage, page};
-use stickslip::explain::try_list::TryOutcome;
+use stickslip::explain::try_list::{TryLine, TryOutcome};
 use stickslip::scene::Scene;
 use stickslip::session::Session;
 use stickslip::step::event::Failure;
@@ -243,4 +243,29 @@ fn the_two_scenes_of_a_stranger_are_cured_by_what_their_pages_say() {
         let loads = frames.iter().map(|frame| frame.state.start.load_factor);
         assert_eq!(loads.fold(0.0, f64::max), 1.0, "{name}: {first:?}");
     }
+}
+
+#[test]
+fn a_ladder_that_reaches_the_load_beyond_the_budget_of_a_trial_is_no_failed_trial() {
+    let settings = [("settings.strategy", "table2"), ("history.increment", "1")];
+    let settings = settings.map(|(path, value)| (path.to_owned(), value.to_owned()));
+    let scene = Scene::open("osc-border", &settings).unwrap();
+    let mut debugger = Debugger::new(Theme::mono(), vec![], Some(Session::new(scene)));
+    debugger.type_keys("c d");
+    let found = found(&debugger);
+    let is_ladder = |line: &&TryLine| line.typed == ":set settings.strategy ladder";
+    let line = found.tries.iter().find(is_ladder).unwrap();
+    assert_eq!(line.outcome, TryOutcome::Works, "{}", line.words());
+    let trial = line.trial.as_ref().unwrap();
+    assert!(
+        trial.minors > 400 && trial.steps.len() > 400,
+        "{}",
+        line.words()
+    );
+    let why = &found.why[0];
+    let minors = format!("settings.strategy=ladder, tried: {} minors)", trial.minors);
+    assert!(
+        why.contains("the ladder reaches it") && why.contains(&minors),
+        "{why}"
+    );
 }

@@ -2,6 +2,7 @@
 
 use crate::by_hand::{app, find, frames, minor, model, press, render, type_text, view};
 use ratatui::style::Color;
+use stickslip::contact::record::Forced;
 use stickslip::model::Mode;
 use stickslip::record::command::{Command, Unit};
 use stickslip::tui::app::Effect;
@@ -31,11 +32,15 @@ fn keys_become_commands() {
     assert_eq!(ask("4 Esc s"), [forward(Unit::Minor, 1)]);
     assert_eq!(
         ask("m x Down m S M"),
-        [
-            force(0, Mode::Fixed, false),
-            force(1, Mode::Sliding, true),
-            Effect::Submit(Command::Release { slave: 1 })
-        ]
+        [force(0, Mode::Fixed, false), force(1, Mode::Sliding, true)],
+        "nothing is forced in these frames"
+    );
+    let mut forced = frames.clone();
+    let shown = forced.last_mut().unwrap();
+    shown.state.nodes[1].forced = Forced::Held(Mode::Sliding);
+    assert_eq!(
+        press(&mut app(), &crate::by_hand::view(&model, &forced), "Down M"),
+        [Effect::Submit(Command::Release { slave: 1 })]
     );
     assert_eq!(ask("m Esc m q"), []);
     assert_eq!(

@@ -556,3 +556,50 @@ fn enter_on_the_heading_of_a_part_of_the_diagnosis_folds_it_and_unfolds_it() {
     debugger.type_keys("Enter");
     assert!(!page(&debugger).contains("Loop …"));
 }
+
+#[test]
+fn the_footer_offers_enter_only_where_there_is_something_to_take() {
+    for (scene, keys, offered) in [
+        ("osc-two6", "c d", "Enter take"),
+        ("osc-two6", "d", "Enter take"),
+        // The history is complete: its report can only be folded.
+        ("osc-off-end", "c d", "Enter fold"),
+        ("osc-off-end", "c r", ""),
+        ("osc-two6", "c r", "Enter apply"),
+    ] {
+        let shown = text(&debugger(scene, keys), 120, 40);
+        let footer = shown.lines().last().unwrap();
+        match offered {
+            "" => assert!(!footer.contains("Enter"), "{scene} {keys}: {footer}"),
+            offered => assert!(footer.contains(offered), "{scene} {keys}: {footer}"),
+        }
+    }
+}
+
+#[test]
+fn enter_folds_the_report_of_a_complete_history() {
+    let mut debugger = debugger("osc-off-end", "c d Enter");
+    let folded = text(&debugger, 120, 40);
+    assert!(folded.contains("Report … (Enter)"), "{folded}");
+    debugger.type_keys("Enter");
+    assert!(text(&debugger, 120, 40).contains("no increment was cut"));
+}
+
+#[test]
+fn a_node_off_all_surfaces_has_no_gap() {
+    let debugger = debugger("osc-off-end", "c");
+    let shown = text(&debugger, 120, 40);
+    let row = shown.lines().find(|line| line.contains("▸  beam.5"));
+    let row = row.unwrap_or_else(|| panic!("{shown}"));
+    assert!(row.contains("free → free        -   "), "{row}");
+}
+
+#[test]
+fn a_caption_of_the_shape_that_is_cut_says_so() {
+    // Enlarged, with forces and a diagnosed node.
+    let debugger = debugger("osc-inclined-cantilever", "c d Esc -");
+    let whole = "longest force 0.005781   ! diagnosed   ×0.80  0: fit";
+    assert!(text(&debugger, 200, 60).contains(whole));
+    let shown = text(&debugger, 120, 40);
+    assert!(shown.contains("! diagnosed   ×0.80  0: f…│"), "{shown}");
+}

@@ -362,3 +362,27 @@ fn in_a_real_terminal_nothing_of_a_walk_typed_at_once_is_lost() {
         session.quit();
     }
 }
+
+#[test]
+fn a_node_that_is_not_forced_cannot_be_released() {
+    let mut debugger = debugger(FLOOR);
+    debugger.type_keys("s s S M");
+    assert_eq!(debugger.app.message.text, "beam.5 is not forced");
+    let branches = |debugger: &Debugger| {
+        let session = debugger.session.as_ref().unwrap();
+        session.timeline().tree().branches().len()
+    };
+    assert_eq!(branches(&debugger), 1);
+    debugger.type_keys("m S M");
+    assert!(
+        debugger
+            .app
+            .message
+            .text
+            .contains("beam.5 follows Table 2 again")
+    );
+    assert_eq!(branches(&debugger), 2);
+    // Before the forced mode, a release goes on without it.
+    debugger.type_keys("m S s S S M");
+    assert_eq!(branches(&debugger), 3, "{}", debugger.app.message.text);
+}

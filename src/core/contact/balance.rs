@@ -63,7 +63,7 @@ pub fn check(
     // The matrix of a body may contain supports. If small and large displacements are mixed, there is no common shape for the
     // moments.
     let given = |body: &Body| matches!(body.kind, BodyKind::Linear(_));
-    if model.bodies.iter().any(given) || (!small && model.bodies.iter().any(Body::is_small)) {
+    if model.bodies.iter().any(given) || (!small && model.bodies.iter().any(Body::has_small_part)) {
         return;
     }
     verdict.add(Finding {

@@ -51,6 +51,12 @@ impl Body {
             BodyKind::Beam(_) | BodyKind::Linear(_) => false,
         }
     }
+
+    /// Whether equilibrium of a part of the body is written on its undeformed shape.
+    pub fn has_small_part(&self) -> bool {
+        let part = |solid: &Solid| solid.materials.iter().any(|m| m.update == Update::Small);
+        self.is_small() || self.solid().is_some_and(part)
+    }
 }
 
 impl BodyKind {

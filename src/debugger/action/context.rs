@@ -2,8 +2,8 @@
 
 use super::keymap::Keymap;
 use super::table::{ActionEntry, begun, by_name};
-use crate::Tree;
 use crate::refusal::{Refusal, refusal};
+use crate::{Frame, Tree};
 use stickslip_core::interface::census::MOST;
 use stickslip_core::{Capabilities, Model, State};
 use stickslip_scene::{EmbeddedFile, Scene, few};
@@ -27,6 +27,8 @@ pub struct Context<'a> {
     pub offers: Option<&'a Capabilities>,
     /// The shown state.
     pub state: Option<&'a State>,
+    /// The point after the shown one on its line.
+    pub next: Option<&'a Frame>,
     /// The current keys; `None` for the defaults.
     pub keymap: Option<&'a Keymap>,
 }

@@ -4,9 +4,10 @@
 use super::context::Context;
 use super::meaning::{Action, ChartOf, Page, Question, Ui};
 use super::table::{ActionEntry, Verb};
+use crate::explain::names;
 use crate::record::export;
 use crate::{Command, ExportScope};
-use stickslip_core::{Capabilities, Intervention, Mode};
+use stickslip_core::{Capabilities, Forced, Intervention, Mode};
 
 /// What an action needs of the current solver.
 #[derive(Clone, Copy)]
@@ -164,14 +165,32 @@ impl ActionEntry {
 }
 
 impl Action {
-    /// Whether the current solver supports this action.
+    /// Whether the current solver supports this action, and it changes something.
     ///
     /// # Errors The reason why not.
     pub fn offered(&self, context: &Context) -> Result<(), String> {
+        if let Action::Session(Command::Release { slave }) = self {
+            released(*slave, context)?;
+        }
         let need = match self {
             Action::Session(command) => Need::from_command(command),
             Action::Ui(ui) => Need::from_ui(ui),
         };
         need.map_or(Ok(()), |need| need.check(context.offers))
+    }
+}
+
+/// Whether a node of our own solver is forced, so that it can be released. Before an intervention a release goes on without that
+/// one, in a new branch. An attached solver may know more than it reports.
+fn released(slave: usize, context: &Context) -> Result<(), String> {
+    let (Some(state), Some(model), None) = (context.state, context.model, context.offers) else {
+        return Ok(());
+    };
+    let is_followed = context.next.is_some_and(|next| next.intervention.is_some());
+    match state.nodes.get(slave).map(|node| node.forced) {
+        Some(Forced::No) if !is_followed => {
+            Err(format!("{} is not forced", names::slave(model, slave)))
+        }
+        _ => Ok(()),
     }
 }

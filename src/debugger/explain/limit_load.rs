@@ -17,10 +17,12 @@
 
 use super::load_limit_probe::{LoadLimitProbe, reach};
 use super::moves_away::moves_away;
-use super::remedies::BUDGET;
+use super::remedies::{BUDGET, RemedyTrial, attempt_within};
+use super::remedy::{LADDER, Remedy};
 use super::restart::restart;
 use super::rigid_motion::BodyMotion;
 use super::surface_end::passed_end;
+use super::try_list::helps;
 use super::{names, strain};
 use std::collections::HashSet;
 use std::ops::ControlFlow;
@@ -72,7 +74,7 @@ impl PathPoint {
 }
 
 /// Maximum number of minor iterations to the failure of the ladder.
-const MOST_OF_LADDER: u64 = 8000;
+const MOST_OF_LADDER: u32 = 8000;
 
 /// How the load on a path stops rising.
 enum PathEnd {
@@ -195,7 +197,7 @@ fn with_ladder(
     };
     stepper.restore(&state.attempt_again());
     stepper.intervene(&Intervention::Settings(settings)).ok()?;
-    let run = restart(stepper, state, MOST_OF_LADDER, stop)?;
+    let run = restart(stepper, state, MOST_OF_LADDER.into(), stop)?;
     match run.failure {
         None => Some(Ok(run.minors)),
         Some(Some(failure)) => Some(Err((stepper.state().clone(), failure))),
@@ -207,8 +209,38 @@ fn with_ladder(
 pub enum LoadEnd {
     /// Equilibrium ends before it.
     Limit(String),
-    /// The strategy does not find the state that another one finds.
-    Strategy(String),
+    /// The strategy does not find the state that the ladder finds, in this many minor iterations.
+    Strategy(u64),
+}
+
+/// The cause in [`LoadEnd::Strategy`]; `is_tried` if a trial shows it as well.
+pub fn of_strategy(minors: u64, is_tried: bool) -> String {
+    // Otherwise the trial of the ladder would contradict this.
+    let beyond = match !is_tried && minors > u64::from(BUDGET) {
+        true => format!("; a remedy's trial stops after {BUDGET}"),
+        false => String::new(),
+    };
+    format!(
+        "the failure is that of the strategy: a state exists at this load, and the ladder reaches it (settings.strategy=ladder, tried: {}{beyond})",
+        counted(minors, "minor")
+    )
+}
+
+/// Repeats a trial of the ladder that ran out of its budget, with a larger one. Returns its minor iterations if it reaches the load.
+pub fn finish_ladder(
+    trials: &mut [RemedyTrial],
+    stepper: &mut Stepper,
+    state: &State,
+    stop: &dyn Fn() -> bool,
+) -> Option<u64> {
+    let remedy = Remedy::from_kind(LADDER, stepper.model(), state)?;
+    let trial = trials.iter_mut().find(|trial| trial.how == remedy.how)?;
+    let longer = attempt_within(stepper, state, &remedy, MOST_OF_LADDER, stop)?;
+    if !helps(&longer) {
+        return None;
+    }
+    *trial = longer;
+    Some(trial.minors.into())
 }
 
 /// Describes the limit load. `None` if none is found, for bodies that were loose from the start, and if interrupted. A mesh whose
@@ -225,17 +257,7 @@ pub fn limit_load(
         return of_cut_increment(stepper, state, failure, stop).map(LoadEnd::Limit);
     }
     match with_ladder(stepper, state, stop)? {
-        Ok(minors) => {
-            // Otherwise the trial of the ladder would contradict this.
-            let beyond = match minors > u64::from(BUDGET) {
-                true => format!("; a remedy's trial stops after {BUDGET}"),
-                false => String::new(),
-            };
-            Some(LoadEnd::Strategy(format!(
-                "the failure is that of the strategy: a state exists at this load, and the ladder reaches it (settings.strategy=ladder, tried: {}{beyond})",
-                counted(minors, "minor")
-            )))
-        }
+        Ok(minors) => Some(LoadEnd::Strategy(minors)),
         Err((state, failure)) => {
             of_cut_increment(stepper, &state, &failure, stop).map(LoadEnd::Limit)
         }

@@ -14,7 +14,7 @@ use super::headline::{at, headline};
 use super::indefinite::{self, indefinite};
 use super::judged;
 use super::jumped::leads_away;
-use super::limit_load::{LoadEnd, limit_load};
+use super::limit_load::{LoadEnd, finish_ladder, limit_load, of_strategy};
 use super::load_limit_probe::reach;
 use super::majors;
 use super::mesh_probe::{MeshProbe, finer};
@@ -85,6 +85,7 @@ pub fn page(
             return None;
         }
     }
+    tell(&page.shown("looking for a limit load …"));
     page.add_limit_load(stepper, state, failure, stop);
     if page.asks_how_far(failure) {
         tell(&page.shown("checking how far smaller steps reach …"));
@@ -517,7 +518,9 @@ impl PageBuilder {
         let text = match limit_load(stepper, state, failure, stop) {
             Some(LoadEnd::Limit(text)) => text,
             // Try shows it already if it was tried there.
-            Some(LoadEnd::Strategy(text)) if !self.trials.iter().any(helps) => {
+            Some(LoadEnd::Strategy(minors)) if !self.trials.iter().any(helps) => {
+                let shown = finish_ladder(&mut self.trials, stepper, state, stop);
+                let text = of_strategy(shown.unwrap_or(minors), shown.is_some());
                 self.facts.insert(0, Fact::why(text));
                 return;
             }

@@ -242,6 +242,19 @@ pub fn attempt(
     if let RemedyInput::Restart(changes) = &remedy.how {
         return attempt_restart(spec?, state, (remedy, changes), stop);
     }
+    let is_own = solver.stepper().is_some();
+    let budget = if is_own { BUDGET } else { BUDGET_ATTACHED };
+    attempt_within(solver, state, remedy, budget, stop)
+}
+
+/// Tries a remedy from a state in at most this many minor iterations; `None` as in [`attempt`].
+pub fn attempt_within(
+    solver: &mut dyn Solver,
+    state: &State,
+    remedy: &Remedy,
+    budget: u32,
+    stop: &dyn Fn() -> bool,
+) -> Option<RemedyTrial> {
     solver.restore(state).ok()?;
     let target = (state.start.leg, state.load_factor);
     let mut trial = RemedyTrial::new(remedy);
@@ -255,7 +268,6 @@ pub fn attempt(
         change(solver, &mut trial, first.clone());
     }
     let is_own = solver.stepper().is_some();
-    let budget = if is_own { BUDGET } else { BUDGET_ATTACHED };
     let until = Until::end().minors(budget.into()).interrupted_by(stop);
     let mut began = Instant::now();
     let end = drive(solver, until, |solver| {

@@ -12,6 +12,8 @@ use std::fmt;
 
 /// Maximum number of characters of a message path in an error.
 const MOST_PATH: usize = 60;
+/// Maximum number of characters of serde's message.
+const MOST_MESSAGE: usize = 300;
 /// Spellings of non-finite numbers that languages write although JSON does not allow them.
 const NO_NUMBERS: [&str; 6] = ["NaN", "nan", "Infinity", "inf", "Inf", "-Infinity"];
 
@@ -61,6 +63,10 @@ fn line(message: &impl Serialize) -> String {
 
 /// The `type` of a message.
 fn kind(line: &str) -> Result<Cow<'_, str>, FormatError> {
+    // serde would also take a list of the values.
+    if line.trim_start().starts_with('[') {
+        return Err(FormatError::at(1, 1, "a message is an object, { }"));
+    }
     #[derive(Deserialize)]
     struct Kind<'a> {
         #[serde(rename = "type", borrow)]
@@ -109,15 +115,67 @@ fn broken(line: &str, path: &str, error: &serde_json::Error) -> FormatError {
         message = "JSON has no NaN and infinity; write null instead".to_owned();
         at = letters.len();
     }
-    let mut letters = path.chars();
-    let path: String = letters.by_ref().take(MOST_PATH).collect();
-    let cut = if letters.next().is_some() { "…" } else { "" };
-    if !path.is_empty() && path != "." {
-        message = format!("{path}{cut}: {message}");
+    message = plainly(&message);
+    let path = beginning(path, MOST_PATH);
+    // serde_path_to_error writes ? where the error is in a key.
+    if !["", ".", "?"].contains(&path.as_str()) {
+        message = format!("{path}: {message}");
     }
     match error.column() {
         0 => FormatError::whole(message),
         _ => FormatError::at(error.line().max(1), line[..at].chars().count() + 1, message),
+    }
+}
+
+/// serde's message in the words of JSON instead of those of Rust, at a readable length.
+fn plainly(message: &str) -> String {
+    let (found, expected) = match message.split_once(", expected ") {
+        Some((found, expected)) if !found.starts_with("unknown") => (found, Some(expected)),
+        _ => (message, None),
+    };
+    let Some(expected) = expected else {
+        return beginning(found, MOST_MESSAGE);
+    };
+    let found = found
+        .trim_start_matches("invalid type: ")
+        .trim_start_matches("invalid value: ");
+    // The value stands in backquotes: integer `3`.
+    let value = ["integer `", "floating point `", "boolean `"]
+        .iter()
+        .find_map(|kind| found.strip_prefix(kind)?.strip_suffix('`'));
+    let found = match (value.unwrap_or(found), found.strip_prefix("string ")) {
+        (_, Some(text)) => text,
+        ("sequence", _) => "a list",
+        ("map", _) => "an object",
+        (value, _) => value,
+    };
+    let expected = match expected {
+        "u32" | "u64" | "usize" => "a whole number from 0",
+        "i64" => "a whole number",
+        "f64" | "f32" => "a number",
+        "a string" | "string or map" => "a text",
+        "a boolean" => "true or false",
+        "a sequence" => "a list",
+        "a map" => "an object",
+        rust if rust.starts_with("struct ") || rust.starts_with("internally tagged") => "an object",
+        tuple if tuple.starts_with("a tuple of size ") => {
+            &tuple.replace("a tuple of size", "a list of")
+        }
+        other => other,
+    };
+    format!(
+        "{} is not valid; expected {expected}",
+        beginning(found, MOST_PATH)
+    )
+}
+
+/// The first characters of a text.
+fn beginning(text: &str, most: usize) -> String {
+    let mut letters = text.chars();
+    let begun: String = letters.by_ref().take(most).collect();
+    match letters.next() {
+        Some(_) => begun + "…",
+        None => begun,
     }
 }
 
@@ -196,17 +254,17 @@ mod tests {
             (
                 r#""increment":1"#,
                 r#""increment":null"#,
-                "at.increment: invalid type: null, expected u32",
+                "at.increment: null is not valid; expected a whole number from 0",
             ),
             (
                 r#""increment":1"#,
                 r#""increment":-1"#,
-                "at.increment: invalid value: integer `-1`, expected u32",
+                "at.increment: -1 is not valid; expected a whole number from 0",
             ),
             (
                 "0.5",
                 r#""much""#,
-                r#"contacts[0].gap: invalid type: string "much", expected f64"#,
+                r#"contacts[0].gap: "much" is not valid; expected a number"#,
             ),
             ("0.5", "1e999", "contacts[0].gap: number out of range"),
             (
@@ -246,6 +304,31 @@ mod tests {
             broken.message.starts_with("missing field `contacts`"),
             "{broken}"
         );
+    }
+
+    #[test]
+    fn a_request_is_an_object_and_its_faults_have_no_words_of_rust() {
+        for (text, told) in [
+            (r#"["step"]"#, "a message is an object, { }"),
+            ("3", "3 is not valid; expected an object"),
+            (r#"{"type":5}"#, "type: 5 is not valid; expected a text"),
+            (
+                r#"{"type":"hello","protocol":1e99}"#,
+                "1e+99 is not valid; expected a whole number from 0",
+            ),
+            (
+                r#"{"type":"force","contact":1,"mode":"free","hold":"yes"}"#,
+                "\"yes\" is not valid; expected true or false",
+            ),
+            (r#"{"type":"step"} {"#, "trailing characters"),
+            (r#"{"type":"step"; }"#, "expected `,` or `}`"),
+        ] {
+            let broken = Request::read(text).expect_err(text);
+            assert_eq!(broken.message, told);
+        }
+        let long = format!(r#"{{"type":"{}"}}"#, "x".repeat(20_000));
+        let broken = Request::read(&long).expect_err("no such request");
+        assert!(broken.message.chars().count() < 400, "{broken}");
     }
 
     #[test]
@@ -301,11 +384,8 @@ mod tests {
             assert!(answer.line().contains(matrix), "{}", answer.line());
         }
         for (matrix, told) in [
-            ("[[1,0],[0,null]]", "matrix[1][1]: invalid type: null"),
-            (
-                "3",
-                "matrix: invalid type: integer `3`, expected rows of numbers",
-            ),
+            ("[[1,0],[0,null]]", "matrix[1][1]: null is not valid"),
+            ("3", "matrix: 3 is not valid; expected rows of numbers"),
             (r#"{"size":2}"#, "matrix: missing field `triplets`"),
         ] {
             let broken = problem(matrix).expect_err(matrix);

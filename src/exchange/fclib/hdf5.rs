@@ -12,7 +12,9 @@
 
 use crate::FormatError;
 use crate::problem::{Bilateral, Global, Local, Matrix, Problem, is_there};
-use hdf5_pure::{Dataset, File, FileBuilder, GroupBuilder, LibVer};
+use hdf5_pure::{
+    DType, Dataset, Error, File, FileBuilder, FormatError as HdfError, GroupBuilder, LibVer,
+};
 
 /// Assumed maximum compression: bytes of numbers per byte of file.
 const COMPRESSION: u64 = 64;
@@ -37,7 +39,10 @@ pub fn read(bytes: Vec<u8>) -> Result<Problem, FormatError> {
     let size = bytes.len() as u64;
     let file = File::from_bytes(bytes)
         .map_err(|why| FormatError::whole(format!("invalid HDF5 file: {why}")))?;
-    let groups = file.root().groups().unwrap_or_default();
+    let groups = file
+        .root()
+        .groups()
+        .map_err(|why| FormatError::whole(format!("invalid HDF5 file: {why}")))?;
     let has = |name: &str| groups.iter().any(|group| group == name);
     if has("fclib_global_rolling") {
         return Err(FormatError::whole(
@@ -145,7 +150,10 @@ impl Part<'_> {
         let path = format!("{}/{name}", self.root);
         let unread =
             |why: &dyn std::fmt::Display| self.broken(name, &format!("cannot be read: {why}"));
-        let dataset = self.file.dataset(&path).map_err(|why| unread(&why))?;
+        let dataset = self.file.dataset(&path).map_err(|why| match why {
+            Error::Format(HdfError::PathNotFound(_)) => self.broken(name, "is missing"),
+            why => unread(&why),
+        })?;
         let shape = dataset.shape().map_err(|why| unread(&why))?;
         let width = dataset.element_size().map_err(|why| unread(&why))?.max(1) as u64;
         let bytes = shape
@@ -161,7 +169,12 @@ impl Part<'_> {
     }
 
     fn wholes(&self, name: &str) -> Result<Vec<i64>, FormatError> {
-        let read = self.dataset(name)?.read_i64();
+        let dataset = self.dataset(name)?;
+        // They would be truncated.
+        if matches!(dataset.dtype(), Ok(DType::F32 | DType::F64)) {
+            return Err(self.broken(name, "has decimals; it must have whole numbers"));
+        }
+        let read = dataset.read_i64();
         read.map_err(|why| self.broken(name, &format!("cannot be read: {why}")))
     }
 
@@ -274,8 +287,12 @@ impl Part<'_> {
                 return Err(self.broken(name, "has an entry with a negative index"));
             };
             if row >= rows || column >= columns || !value.is_finite() {
-                let what =
-                    format!("has {value:?} in row {row}, column {column}, of {rows} and {columns}");
+                let what = match value.is_finite() {
+                    true => format!(
+                        "has an entry in row {row}, column {column}, but {rows} rows and {columns} columns (counted from 0)"
+                    ),
+                    false => format!("has {value:?} in row {row}, column {column}"),
+                };
                 return Err(self.broken(name, &what));
             }
             if is_there(value) {
@@ -519,6 +536,41 @@ mod tests {
             let broken = read(bytes).unwrap_err();
             assert!(broken.message.contains(told), "{broken}");
         }
+    }
+
+    #[test]
+    fn missing_truncated_and_decimal_parts_are_named() {
+        let with = |decimal: bool, row: i32| {
+            file("fclib_local", |group| {
+                group.create_dataset("spacedim").with_i32_data(&[2]);
+                let mut own = group.create_group("W");
+                for (name, value) in [("m", 2), ("n", 2), ("nz", 1)] {
+                    own.create_dataset(name).with_i32_data(&[value]);
+                }
+                if decimal {
+                    own.create_dataset("p").with_f64_data(&[0.5]);
+                } else {
+                    own.create_dataset("p").with_i32_data(&[0]);
+                }
+                own.create_dataset("i").with_i32_data(&[row]);
+                own.create_dataset("x").with_f64_data(&[1.0]);
+                group.add_group(own.finish());
+                vectors(group, &[("q", &[1.0, 2.0])]);
+            })
+        };
+        let told = |bytes| read(bytes).unwrap_err().message;
+        assert_eq!(told(with(false, 1)), "fclib_local/vectors/mu is missing");
+        let decimals = "fclib_local/W/p has decimals; it must have whole numbers";
+        assert_eq!(told(with(true, 1)), decimals);
+        let outside = "fclib_local/W has an entry in row 2, column 0, but 2 rows and 2 columns (counted from 0)";
+        assert_eq!(told(with(false, 2)), outside);
+        let mut cut = with(false, 1);
+        cut.truncate(cut.len() / 4);
+        assert!(
+            told(cut.clone()).starts_with("invalid HDF5"),
+            "{}",
+            told(cut)
+        );
     }
 
     #[test]

@@ -49,7 +49,7 @@ fn unreadable(file: &str, text: &str, what: &str, error: &SpannedError) -> Scene
     let cursor = (error.span.start.line, error.span.start.col);
     // If a whole value is wrong, report its start. Otherwise report ron's cursor: the start of its span is closer to the error
     // than the end.
-    let (at, message) = match (expected(text, error), &error.code) {
+    let (at, message) = match (expected(text, error, what), &error.code) {
         (Some(_), _) if is_at_end(text, error) => (cursor, message(&ron::Error::Eof, what)),
         (Some(wanted), _) if !path.0.is_empty() => {
             let shown = shortened(text.get(value).unwrap_or_default());
@@ -118,7 +118,8 @@ fn half_read(text: &str, byte: usize) -> Option<&'static str> {
 /// Whether a value begins here, and not the name of a field: after a colon, or in a list.
 fn is_value(text: &str, byte: usize) -> bool {
     let mut path = path_at(text, byte);
-    let in_list = matches!(path.0.pop(), Some(Step::Index(_))) && {
+    let begins = locate(text, &path).start >= byte;
+    let in_list = begins && matches!(path.0.pop(), Some(Step::Index(_))) && {
         let list = locate(text, &path);
         text.get(list).is_some_and(|list| list.starts_with('['))
     };
@@ -130,22 +131,33 @@ fn is_value(text: &str, byte: usize) -> bool {
             .ends_with(':')
 }
 
+/// The kind of value that ron expected.
+fn kind(error: &ron::Error) -> Option<&'static str> {
+    use ron::Error as E;
+    Some(match error {
+        E::ExpectedFloat => "a number",
+        E::ExpectedInteger | E::InvalidIntegerDigit { .. } => "a whole number",
+        E::IntegerOutOfBounds => "a whole number that is neither negative nor huge",
+        E::ExpectedBoolean => "true or false",
+        E::ExpectedString => "a text in quotes",
+        E::ExpectedArray => "a list in square brackets, [ ]",
+        _ => return None,
+    })
+}
+
 /// What was expected instead of the value.
-fn expected(text: &str, error: &SpannedError) -> Option<&'static str> {
+fn expected(text: &str, error: &SpannedError, what: &str) -> Option<&'static str> {
     use ron::Error as E;
     let start = error.span.start;
     let byte = byte_at(text, start.line, start.col);
     match &error.code {
-        E::ExpectedFloat => Some("a number"),
-        E::ExpectedInteger | E::InvalidIntegerDigit { .. } => Some("a whole number"),
-        E::IntegerOutOfBounds => Some("a whole number that is neither negative nor huge"),
-        E::ExpectedBoolean => Some("true or false"),
-        E::ExpectedString => Some("a text in quotes"),
-        E::ExpectedArray => Some("a list in square brackets, [ ]"),
+        code if kind(code).is_some() => kind(code),
         E::ExpectedDifferentLength { expected, .. } if expected.ends_with('3') => {
             Some("three values, (a, b, c)")
         }
-        E::ExpectedDifferentLength { .. } => Some("two numbers, (x, y)"),
+        // Pairs of a scene are points.
+        E::ExpectedDifferentLength { .. } if what == "scene" => Some("two numbers, (x, y)"),
+        E::ExpectedDifferentLength { .. } => Some("two values, (a, b)"),
         E::ExpectedStructLike | E::ExpectedNamedStructLike(_) => {
             Some("a value in round brackets, ( )")
         }
@@ -205,26 +217,6 @@ pub fn refused(file: &str, line: usize, words: &str, error: &SpannedError) -> Sc
 fn message(error: &ron::Error, what: &str) -> String {
     use ron::Error as E;
     match error {
-        E::NoSuchStructField {
-            expected, found, ..
-        } => format!(
-            "unknown field {}{} (fields: {})",
-            quoted(found),
-            did_you_mean(found, expected.iter().copied()),
-            expected.join(", ")
-        ),
-        E::NoSuchEnumVariant {
-            expected, found, ..
-        } => format!(
-            "{} is not one of the choices{} (choices: {})",
-            quoted(found),
-            did_you_mean(found, expected.iter().copied()),
-            expected.join(", ")
-        ),
-        E::MissingStructField { field, .. } => {
-            format!("the field {field:?} is missing; it has no default")
-        }
-        E::DuplicateStructField { field, .. } => format!("the field {field:?} is given twice"),
         E::ExpectedStructLike | E::ExpectedNamedStructLike(_) => {
             let second = match what {
                 "scene" => "nodes",
@@ -263,26 +255,58 @@ fn message(error: &ron::Error, what: &str) -> String {
     }
 }
 
-/// ron's own message, shortened to a readable length.
+/// ron's message in words that do not name types of this program, shortened to a readable length.
 pub fn plainly(error: &ron::Error) -> String {
     use ron::Error as E;
     const MOST: usize = 300;
     match error {
+        E::NoSuchStructField {
+            expected, found, ..
+        } => format!(
+            "unknown field {}{} (fields: {})",
+            quoted(found),
+            did_you_mean(found, expected.iter().copied()),
+            expected.join(", ")
+        ),
+        E::NoSuchEnumVariant {
+            expected, found, ..
+        } => format!(
+            "{} is not one of the choices{} (choices: {})",
+            quoted(found),
+            did_you_mean(found, expected.iter().copied()),
+            expected.join(", ")
+        ),
+        E::MissingStructField { field, .. } => {
+            format!("the field {field:?} is missing; it has no default")
+        }
+        E::DuplicateStructField { field, .. } => format!("the field {field:?} is given twice"),
         E::ExpectedStructLike | E::ExpectedNamedStructLike(_) => {
-            return "a value in round brackets, ( ), was expected".to_owned();
+            "a value in round brackets, ( ), was expected".to_owned()
         }
-        E::ExpectedDifferentStructName { found, .. } => {
-            return format!(
-                "found {} where a value in round brackets, ( ), or a closing bracket was expected",
-                quoted(found)
-            );
+        E::ExpectedDifferentStructName { found, .. } => format!(
+            "found {} where a value in round brackets, ( ), or a closing bracket was expected",
+            quoted(found)
+        ),
+        E::ExpectedDifferentLength { expected, found } => {
+            let count = expected.rsplit(' ').next().unwrap_or_default();
+            format!("expected {count} values in round brackets, found {found}")
         }
-        _ => {}
+        E::InvalidValueForType { expected, found } => {
+            let found = found
+                .replace("a sequence", "a list")
+                .replace("a map", "a value in braces, { }");
+            format!("expected {expected}, found {}", shortened(&found))
+        }
+        other => match kind(other) {
+            Some(kind) => format!("expected {kind}"),
+            None => {
+                let text = shown::cut(&other.to_string(), MOST);
+                let mut letters = text.chars();
+                letters
+                    .next()
+                    .map(|first| first.to_lowercase().chain(letters).collect())
+                    .unwrap_or_default()
+            }
+        },
     }
-    let text = shown::cut(&error.to_string(), MOST);
-    let mut letters = text.chars();
-    letters
-        .next()
-        .map(|first| first.to_lowercase().chain(letters).collect())
-        .unwrap_or_default()
 }

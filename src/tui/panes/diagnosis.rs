@@ -29,11 +29,10 @@ const MOST_LISTED: usize = 8;
 /// Number of rows of the diagnosis that can be selected above its parts: lines of Try, or consistent states.
 pub fn choices(page: &DiagnosisPage) -> usize {
     let states = page.found.census.as_ref();
-    let choices = match page.tries.len() {
+    match page.tries.len() {
         0 => states.map_or(0, |census| census.answers.len()),
         tries => tries,
-    };
-    choices.max(1)
+    }
 }
 
 /// The pane.

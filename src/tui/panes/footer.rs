@@ -250,7 +250,11 @@ fn table_keys(app: &App, view: Option<&View>, places: &ScreenAreas, room: usize)
         .iter()
         .filter_map(|(name, label)| {
             let entry = by_name(name).ok().filter(|_| app.count.is_none())?;
-            Some((entry, key(entry)?, (*label).to_owned()))
+            let label = match *name {
+                "repeat" => app.enter_label(label, view)?,
+                _ => *label,
+            };
+            Some((entry, key(entry)?, label.to_owned()))
         });
     let general = ACTIONS
         .iter()
