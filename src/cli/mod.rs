@@ -57,7 +57,7 @@ use std::process::ExitCode;
 use stickslip_study::origin;
 
 /// Steps through contact iterations of the finite element method, in a terminal.
-#[derive(Parser)]
+#[derive(Debug, Parser)]
 #[command(styles = clap::builder::Styles::plain())]
 #[command(name = "stickslip", version = origin::VERSION, args_conflicts_with_subcommands = true)]
 #[command(

@@ -7,6 +7,7 @@ use std::sync::{Arc, Weak};
 const KEPT: usize = 64;
 
 /// Values by the data that they were computed from, latest last.
+#[derive(Debug)]
 pub(crate) struct Memo<T, V>(VecDeque<(Weak<T>, V)>);
 
 impl<T, V> Default for Memo<T, V> {

@@ -6,7 +6,7 @@
 use std::fmt;
 
 /// FNV-1a with 64 bits.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Digest(u64);
 
 impl Default for Digest {

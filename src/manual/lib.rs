@@ -81,7 +81,7 @@ pages! {
 }
 
 /// An unknown topic.
-#[derive(Debug, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("the manual has no page '{topic}'{near}; `help` lists all")]
 pub struct NoPage {
     topic: String,

@@ -20,7 +20,7 @@ use stickslip_core::{Body, BodyKind, Elastic, Node, Solid};
 const NONE: f64 = 1e-9;
 
 /// A side of a body with its material, which determines the width across the plane.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy)]
 pub(super) struct AreaSide<'a> {
     pub nodes: &'a [usize],
     made_of: Option<&'a Elastic>,

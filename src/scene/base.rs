@@ -104,6 +104,7 @@ fn compiled(scene: &Scene) -> Compiled<'_> {
 }
 
 /// A solution method for many scenes: settings and a history that do not depend on the rest of a scene.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Method(Choices);
 
 impl Method {

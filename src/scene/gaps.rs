@@ -23,6 +23,7 @@ const MOST: usize = 5;
 const SAME_WAY: f64 = 0.5;
 
 /// The initial gaps of the slave nodes above one surface.
+#[derive(Debug, Clone, PartialEq)]
 pub struct StartGaps {
     /// Number of the surface.
     pub surface: usize,
@@ -147,7 +148,7 @@ pub fn warnings(model: &Model) -> Vec<String> {
 }
 
 /// A surface with the wrong orientation.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct TurnedSurface {
     /// Number of the surface.
     pub surface: usize,

@@ -52,7 +52,7 @@ pub fn builtin_text() -> &'static str {
 }
 
 /// A list of benchmarks.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Benchmarks {
     /// Path of the file, or [`BUILTIN`].
@@ -104,6 +104,7 @@ pub struct Benchmark {
 }
 
 /// Result of a benchmark.
+#[derive(Debug, Clone, PartialEq)]
 pub struct ComparedBenchmark {
     /// Our value; `None` if the run did not get that far.
     pub ours: Option<f64>,

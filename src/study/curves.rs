@@ -18,6 +18,7 @@ const MOST_ENTRIES: usize = 48;
 const MARKERS: usize = 12;
 
 /// Curves over two axes.
+#[derive(Debug, Clone, PartialEq)]
 pub struct CurveChart {
     /// Above it.
     pub title: String,
@@ -32,6 +33,7 @@ pub struct CurveChart {
 }
 
 /// An axis of a chart.
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Axis {
     /// What it is called.
     pub name: String,
@@ -40,6 +42,7 @@ pub struct Axis {
 }
 
 /// A line with markers, and an entry of the legend.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Curve {
     /// Text in the legend.
     pub label: String,

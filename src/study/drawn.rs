@@ -6,7 +6,7 @@ use stickslip_scene::shown;
 pub type Colour = (u8, u8, u8);
 
 /// Position of a text relative to its point.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Anchor {
     /// To the right of the point.
     Left,
@@ -28,6 +28,7 @@ pub enum Face {
 }
 
 /// A line of text.
+#[derive(Debug, Clone, PartialEq)]
 pub struct TextLine {
     /// Its point in pixels: to the right and downwards.
     pub at: (f64, f64),
@@ -61,6 +62,7 @@ impl TextLine {
 }
 
 /// A shape.
+#[derive(Debug, Clone, PartialEq)]
 pub enum Shape {
     /// A line of text.
     Text(TextLine),

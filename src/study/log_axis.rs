@@ -1,7 +1,7 @@
 //! Logarithmic axes, fitted to the data.
 
 /// A logarithmic axis.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LogAxis {
     /// Decimal logarithm of the lower end.
     low: f64,

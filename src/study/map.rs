@@ -88,6 +88,7 @@ pub struct Map {
 }
 
 /// A grid of cells: the last column of the plan is horizontal, the one before it vertical.
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Panel {
     /// The settings that all its cells share; may be empty.
     pub name: String,

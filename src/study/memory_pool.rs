@@ -10,7 +10,7 @@ use stickslip_core::{Estimate, Model};
 use stickslip_scene::memory;
 
 /// Memory in use, and the number of runs.
-#[derive(Default)]
+#[derive(Debug, Default)]
 struct MemoryUse {
     bytes: f64,
     runs: usize,
@@ -19,6 +19,7 @@ struct MemoryUse {
 }
 
 /// Memory that runs take and return.
+#[derive(Debug)]
 pub struct MemoryPool {
     free: f64,
     taken: Mutex<MemoryUse>,
@@ -26,6 +27,7 @@ pub struct MemoryPool {
 }
 
 /// The memory of a run, returned when dropped.
+#[derive(Debug)]
 pub struct MemoryShare<'a> {
     pool: &'a MemoryPool,
     bytes: f64,

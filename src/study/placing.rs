@@ -43,6 +43,7 @@ impl Patch {
 }
 
 /// The occupied parts of a window.
+#[derive(Debug, Clone, PartialEq)]
 pub struct OccupiedArea {
     window: Patch,
     taken: Vec<Patch>,

@@ -139,7 +139,7 @@ impl Cost {
 }
 
 /// How to measure a chart.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Measure {
     /// Kind of cost.
     pub cost: Cost,

@@ -58,7 +58,7 @@ pub struct Vary {
 }
 
 /// Why a text cannot be parsed as a varied setting.
-#[derive(Debug, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum NoVary {
     /// The list of values is missing.
     #[error("expected PATH=A,B,C, such as history.increment=0.01,0.02")]

@@ -45,7 +45,7 @@ pub const ENTRY: f64 = 22.0;
 const MAX_LINE: usize = 2000;
 
 /// The frame of a plot.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy)]
 pub struct Axes {
     /// Left edge.
     pub left: f64,
@@ -96,7 +96,7 @@ impl Axes {
 }
 
 /// A drawing; later shapes lie above earlier ones.
-#[derive(Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Sheet {
     /// Width in pixels.
     pub width: f64,

@@ -13,6 +13,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 /// The problems, the variants and the verdicts.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Survey {
     /// The problems.
     pub population: Population,
@@ -23,7 +24,7 @@ pub struct Survey {
 }
 
 /// Number of problems by verdict of a variant, separately for problems with and without a solution.
-#[derive(Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Tally {
     /// Problems with a solution.
     pub solvable: usize,

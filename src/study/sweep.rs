@@ -64,6 +64,7 @@ pub struct Sweep<'a, T> {
 }
 
 /// Where results are stored.
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub enum ResultStorage {
     /// In a file, if one is given; one shard of the cells is computed.
     Log(Option<PathBuf>, Shard),
@@ -84,6 +85,7 @@ pub struct Store<T> {
 }
 
 /// Cells without a result.
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct MissingCells {
     /// Their numbers, from 0.
     pub cells: Vec<usize>,

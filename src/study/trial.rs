@@ -100,6 +100,7 @@ impl JudgedProblem {
 }
 
 /// A variant, with the solution method that its settings give for all problems of a population.
+#[derive(Debug, Clone)]
 pub struct PreparedVariant<'a> {
     variant: &'a Variant,
     /// `None` if the settings are not only about the method, or are invalid.

@@ -114,7 +114,7 @@ pub struct Message {
 }
 
 /// What a file that is being loaded will show.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LoadTarget {
     /// Another scene, with or without a lesson.
     Scene,
@@ -123,6 +123,7 @@ pub enum LoadTarget {
 }
 
 /// All state of the screen that is not in the session.
+#[derive(Debug, Clone)]
 pub struct App {
     /// Colours and weights.
     pub theme: Theme,

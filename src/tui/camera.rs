@@ -4,7 +4,7 @@ use crate::view::View;
 use stickslip_debugger::explain::outline::{self, Projection};
 
 /// Pan and zoom.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Camera {
     /// Magnification; 1 shows the whole shape.
     pub zoom: f64,

@@ -9,6 +9,7 @@ use ratatui::{buffer::Buffer, layout::Rect, style::Style};
 use stickslip_debugger::explain::outline::{clip, mix};
 
 /// Dots in a rectangle of cells. Dot (0, 0) is at the top left.
+#[derive(Debug, Clone)]
 pub struct Canvas {
     area: Rect,
     cells: Vec<(u8, Style)>,

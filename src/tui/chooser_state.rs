@@ -94,6 +94,7 @@ impl Chooser {
 }
 
 /// The preview of the selected entry.
+#[derive(Debug, Clone)]
 pub struct Preview {
     /// Name of the entry.
     pub name: String,
@@ -102,6 +103,7 @@ pub struct Preview {
 }
 
 /// Content of a preview: a scene, or a lesson with its scene.
+#[derive(Debug, Clone)]
 pub struct PreviewContent {
     /// Whether it is a lesson.
     pub is_lesson: bool,
@@ -152,7 +154,7 @@ impl Preview {
 }
 
 /// Loads previews on a background thread.
-#[derive(Default)]
+#[derive(Debug, Default)]
 pub struct PreviewLoader(Option<(String, Receiver<Preview>)>);
 
 impl PreviewLoader {

@@ -6,7 +6,7 @@ use ratatui::style::{Modifier, Style};
 use std::ops::Range;
 
 /// A visible iteration and its screen column.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy)]
 pub struct Column {
     /// Index of the iteration.
     pub at: usize,

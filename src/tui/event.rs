@@ -1,6 +1,7 @@
 //! Input of the debugger: keys, clicks and pasted text, from a terminal or a page.
 
 /// An input.
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Event {
     /// A key press.
     Key(KeyEvent),
@@ -11,7 +12,7 @@ pub enum Event {
 }
 
 /// A key press.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct KeyEvent {
     /// The key.
     pub code: KeyCode,
@@ -82,7 +83,7 @@ impl Modifiers {
 }
 
 /// A mouse action in a cell of the screen.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct MouseEvent {
     /// What was done.
     pub kind: MouseAction,
@@ -93,7 +94,7 @@ pub struct MouseEvent {
 }
 
 /// A mouse action.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MouseAction {
     /// The left button was pressed.
     Click,

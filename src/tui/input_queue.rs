@@ -12,6 +12,7 @@ const MOST: usize = 1024;
 const NAMED: usize = 3;
 
 /// Queued input.
+#[derive(Debug, Clone, PartialEq)]
 pub enum QueuedInput {
     /// A key.
     Key(KeyEvent),
@@ -36,7 +37,7 @@ stickslip_core::words! {
 }
 
 /// The queue, oldest input first.
-#[derive(Default)]
+#[derive(Debug, Clone, Default)]
 pub struct Ahead {
     queue: VecDeque<QueuedInput>,
     awaited: Option<WaitReason>,

@@ -135,6 +135,7 @@ pub struct Choice {
 }
 
 /// The areas of a screen.
+#[derive(Debug, Clone, PartialEq)]
 pub struct ScreenAreas {
     /// The lines at the top.
     pub status: Rect,

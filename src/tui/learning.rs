@@ -23,7 +23,7 @@ pub struct Reading {
 }
 
 /// The visible part of a lesson page.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy)]
 pub(super) struct VisibleLines {
     /// The first visible line, and the one after the last.
     pub from: usize,
@@ -33,7 +33,7 @@ pub(super) struct VisibleLines {
 }
 
 /// The current lesson, and prediction mode.
-#[derive(Default)]
+#[derive(Debug, Clone, Default)]
 pub struct Learning {
     /// The lesson.
     pub lesson: Option<Tutor>,

@@ -7,7 +7,7 @@ use stickslip_exchange::attach::message::Level;
 use stickslip_scene::joined;
 
 /// How much of a solver's log has been counted.
-#[derive(Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct LogCounts {
     /// Lines counted so far.
     lines: usize,

@@ -2,7 +2,7 @@
 //! `stickslip screens` draws them as pictures.
 
 /// A screen of the debugger.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy)]
 pub struct MainScreen<'a> {
     /// Its name.
     pub name: &'a str,

@@ -37,6 +37,7 @@ static OWNERSHIP: Ownership = Ownership(Mutex::new(false));
 static MOUSE: AtomicBool = AtomicBool::new(false);
 
 /// The terminal, taken over until this is dropped.
+#[derive(Debug)]
 pub struct Terminal {
     /// Never dropped: dropping shows the cursor once more, and panics if the terminal is gone and the error cannot be printed.
     screen: ManuallyDrop<ratatui::Terminal<CrosstermBackend<Stdout>>>,

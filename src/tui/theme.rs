@@ -38,7 +38,7 @@ pub fn terminal_number(colour: Color) -> Option<u8> {
 }
 
 /// The styles of the screen.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Theme {
     /// The background.
     pub ground: Style,

@@ -16,7 +16,7 @@ use stickslip_debugger::{
 use stickslip_scene::{Scene, number, shown};
 
 /// All session data needed for drawing. Plain data, so that tests can construct it.
-#[derive(Clone)]
+#[derive(Debug, Clone)]
 pub struct View<'a> {
     /// File or built-in name of the scene.
     pub name: &'a str,
@@ -47,7 +47,7 @@ pub struct View<'a> {
 }
 
 /// An attached solver.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy)]
 pub struct AttachedSolver<'a> {
     /// Its capabilities.
     pub offers: &'a Capabilities,

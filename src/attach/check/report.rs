@@ -17,6 +17,7 @@ pub enum Verdict {
 }
 
 /// A check.
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CheckResult {
     /// The ability that was tested.
     pub what: &'static str,
@@ -27,7 +28,7 @@ pub struct CheckResult {
 }
 
 /// The results for one solver.
-#[derive(Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Report {
     /// Name and version of the solver.
     pub name: String,

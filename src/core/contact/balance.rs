@@ -76,7 +76,7 @@ pub fn check(
 }
 
 /// Sum of forces, and of their moments about `middle`.
-#[derive(Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default)]
 struct Total {
     force: [f64; 2],
     moment: f64,

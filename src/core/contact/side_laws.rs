@@ -29,7 +29,7 @@ pub(super) enum SideHistory {
 }
 
 /// Violations of the laws on a side or in a corner, relative to the scene's force.
-#[derive(Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Amounts {
     pub tension: f64,
     pub cone: f64,

@@ -27,7 +27,7 @@ use crate::{
 const NOTHING: f64 = 1e-9;
 
 /// Reservations with which a state is accepted.
-#[derive(Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(super) struct AcceptanceNotes {
     /// Law that the state violates.
     pub marked: Option<Finding>,

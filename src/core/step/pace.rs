@@ -64,7 +64,7 @@ pub struct SuspectIncrement {
 }
 
 /// Expected motions of an increment (length), by the tangent and by the previous increments.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct ExpectedMotion {
     /// Predicted by the tangent; 0 without a prediction.
     tangent: f64,

@@ -19,6 +19,7 @@ use std::ops::Deref;
 use std::sync::Arc;
 
 /// A strategy of this package, or one from outside ([`crate::step::Stepper::with_strategy`]).
+#[derive(Clone)]
 pub(crate) enum AnyMethod {
     /// One of those here.
     Builtin(&'static dyn Method),

@@ -9,7 +9,7 @@ use stickslip_core::{Capabilities, Model, State};
 use stickslip_scene::{EmbeddedFile, Scene, few};
 
 /// What the arguments of actions can refer to.
-#[derive(Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct Context<'a> {
     /// The model of the open scene.
     pub model: Option<&'a Model>,

@@ -10,7 +10,7 @@ use crate::{Command, ExportScope};
 use stickslip_core::{Capabilities, Forced, Intervention, Mode};
 
 /// What an action needs of the current solver.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Need {
     /// Forcing a mode for one iteration.
     Force,

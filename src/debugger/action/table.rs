@@ -30,6 +30,7 @@ stickslip_core::words! {
 use Group::*;
 
 /// An action: its name, its keys and its help.
+#[derive(Debug)]
 pub struct ActionEntry {
     /// Name, as typed.
     pub name: &'static str,

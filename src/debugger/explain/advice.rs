@@ -14,7 +14,7 @@ use stickslip_core::{BoundUpdate, Failure, Mode, Model, Singular, State, Strateg
 use stickslip_scene::gaps::turned;
 
 /// A possible measure.
-#[derive(Debug)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Advice {
     /// Can be tried from the state.
     Remedy(Remedy),

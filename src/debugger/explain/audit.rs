@@ -39,7 +39,7 @@ impl<T> WorstFinding<T> {
 }
 
 /// A master node inside a slave's body.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PenetratingMaster {
     /// Number of the node in the scene.
     pub node: usize,
@@ -50,7 +50,7 @@ pub struct PenetratingMaster {
 }
 
 /// The audit of a history.
-#[derive(Default)]
+#[derive(Debug, Clone, Default)]
 pub struct Audit {
     /// Number of accepted increments.
     pub increments: u32,

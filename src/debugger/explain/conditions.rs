@@ -15,7 +15,7 @@ pub enum Given {
 }
 
 /// An arrow that ends where it acts.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ConditionArrow {
     /// What it stands for.
     pub given: Given,
@@ -43,7 +43,7 @@ impl ConditionArrow {
 pub type Support = (usize, [bool; 3]);
 
 /// The marks of a state, besides its supports.
-#[derive(Default)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Conditions {
     /// Forces, pressures and prescribed displacements.
     pub arrows: Vec<ConditionArrow>,

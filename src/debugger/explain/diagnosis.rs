@@ -32,6 +32,7 @@ const MOST_PUSHES: usize = 24;
 const MOST_NAMES: usize = 6;
 
 /// Diagnosis of a cycle.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Diagnosis {
     /// The cycle that starts from the nodes' states. Nodes are indices in the problem.
     pub cycle: Cycle,
@@ -52,6 +53,7 @@ pub struct Diagnosis {
 }
 
 /// One iteration of a cycle.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Phase {
     /// The record of each node.
     pub records: Vec<ContactRecord>,
@@ -61,7 +63,7 @@ pub struct Phase {
 }
 
 /// The main cause of a node's mode change.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Push {
     /// Index of the node whose mode changes.
     pub node: usize,

@@ -175,7 +175,7 @@ fn words((load, how): &(f64, PathEnd), model: &Model) -> String {
 }
 
 /// Resistance of the remaining contacts against a motion.
-#[derive(Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 struct Resistance {
     /// Available and used friction (power).
     friction: [f64; 2],

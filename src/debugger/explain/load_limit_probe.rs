@@ -17,6 +17,7 @@ const TRIALS: u32 = 60;
 const MINORS: u64 = 400;
 
 /// Result of the smaller steps.
+#[derive(Debug, Clone, PartialEq)]
 pub struct LoadLimitProbe {
     /// Load factor reached.
     pub load: f64,

@@ -26,7 +26,7 @@ const MOST_MAJORS: usize = 8;
 const MOST_CHANGES: usize = 3;
 
 /// The kink between two neighbouring elements of a surface.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Kink {
     /// Turning angle of the surface (degrees), positive if convex, negative if concave.
     pub degrees: f64,

@@ -6,6 +6,7 @@ use stickslip_core::State;
 use stickslip_scene::Spec;
 
 /// Result of the trial.
+#[derive(Debug, Clone, PartialEq)]
 pub struct MeshProbe {
     /// The refinement tried.
     pub refine: usize,

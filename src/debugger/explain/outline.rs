@@ -9,7 +9,7 @@ use stickslip_core::{Body, BodyKind, Event, Model, SurfaceElement};
 pub type Point = [f64; 2];
 
 /// How a scene in space is drawn.
-#[derive(Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Projection {
     /// x to the right, z upwards, y to the upper right.
     #[default]
@@ -106,7 +106,7 @@ pub fn element(element: SurfaceElement<'_>, place: impl Fn(usize) -> Point) -> V
 }
 
 /// A rectangle in the scene.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bounds {
     /// Minimum x and y.
     pub low: Point,

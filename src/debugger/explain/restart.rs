@@ -12,6 +12,7 @@ use stickslip_scene::{Scene, Spec};
 pub(super) const BUDGET: u64 = 4000;
 
 /// Result of the trial.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Restart {
     /// Minor iterations from the start.
     pub minors: u64,

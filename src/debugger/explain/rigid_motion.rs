@@ -22,7 +22,7 @@ const ARROWS: usize = 8;
 const NONE: f64 = 1e-9;
 
 /// Description of loose bodies, with arrows for the shape.
-#[derive(Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct LooseBodies {
     /// The facts.
     pub facts: Vec<Fact>,

@@ -18,7 +18,7 @@ const DRAWN: f64 = 1e-9;
 pub const NOTE: &str = "(round-off)";
 
 /// Sizes below which forces and lengths are round-off.
-#[derive(Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct RoundOff {
     /// Force.
     pub force: f64,

@@ -10,7 +10,7 @@ use stickslip_scene::shortest;
 const HALVINGS: i32 = 6;
 
 /// Result of the search.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum StepSizeProbe {
     /// An increment of this size has a consistent state, with the bodies linearised at its start.
     Found(f64),

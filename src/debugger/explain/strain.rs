@@ -97,7 +97,7 @@ pub fn left(model: &Model, point: &PointDeformation) -> String {
 }
 
 /// Role of a solid's law in a failure.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MaterialCause {
     /// The worst point of the failed iterate if it is outside the range, otherwise of the last equilibrium.
     pub point: PointDeformation,

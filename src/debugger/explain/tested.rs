@@ -4,7 +4,7 @@ use super::influence::{Influence, NodePush};
 use stickslip_core::{Decision, TestedQuantity};
 
 /// Dimension of a tested quantity.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Dimension {
     /// A force.
     Force,

@@ -38,7 +38,7 @@ struct TouchDecision {
 }
 
 /// Result of an increment with `touch: start`.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TouchDifference {
     /// The increment.
     pub increment: u32,

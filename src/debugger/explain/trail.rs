@@ -7,7 +7,7 @@ use stickslip_core::{Event, Friction, Mode};
 pub const LONGEST: usize = 12;
 
 /// A contact in one minor iteration.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TrailPoint {
     /// Mode of the solve.
     pub mode: Mode,
@@ -119,6 +119,7 @@ impl Cone {
 const CLOSE: f64 = 1e-2;
 
 /// The cobweb of T_max: from the diagonal up to the value found, and across to the diagonal.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Cobweb {
     /// What the values of the path are less, if they are close to each other; otherwise 0.
     pub origin: f64,

@@ -74,6 +74,7 @@ impl ReportedIterations {
 }
 
 /// How well the best rule reproduces the reported iterations.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Walk {
     /// The settings of the best rule.
     pub settings: Settings,

@@ -60,6 +60,7 @@ pub struct Side {
 }
 
 /// Two branches side by side.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Comparison {
     /// Both at their tips.
     pub tips: [Side; 2],

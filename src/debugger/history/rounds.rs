@@ -35,7 +35,7 @@ const SAME: f64 = 2.0;
 const NAMED: usize = 6;
 
 /// Detects, iteration by iteration, when the modes of an attached solver start to repeat.
-#[derive(Default)]
+#[derive(Debug, Default)]
 pub struct CycleWatch {
     recent: VecDeque<Strip>,
     /// Whether they repeated at the last iteration.
@@ -66,6 +66,7 @@ impl CycleWatch {
 pub type Phase = (Mode, Option<i16>);
 
 /// Behaviour of the modes up to the end of a line.
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Rounds {
     /// They repeat.
     Cycle {

@@ -17,7 +17,7 @@ const MOST: usize = 4;
 const SLOW: f32 = 1.0;
 
 /// Cost of an accepted increment, with its failed attempts.
-#[derive(Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 struct IncrementCost {
     increment: u32,
     load: f64,

@@ -44,7 +44,7 @@ pub enum BranchEnd {
 }
 
 /// Summary of a branch.
-#[derive(Debug)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Summary {
     /// Number in order of creation, from 0; `b1` has number 0.
     pub number: usize,

@@ -19,6 +19,7 @@ use stickslip_scene::{Scene, joined, shown, sig2, sig4};
 pub const TOLERANCE: f64 = 1e-9;
 
 /// One difference.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Difference {
     /// Name of the node. `None` if the difference concerns the whole state.
     pub node: Option<String>,
@@ -49,7 +50,7 @@ const SLAVE: &str = "slave";
 const NODE: &str = "node";
 
 /// All differences; displayed as a table.
-#[derive(Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Differences {
     /// One row per difference.
     pub rows: Vec<Difference>,

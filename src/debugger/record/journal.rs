@@ -29,7 +29,7 @@ pub const FORMAT: u32 = 1;
 const EXTENSION: &str = "journal";
 
 /// The first line.
-#[derive(Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct JournalHeader {
     /// Format version.
@@ -298,6 +298,7 @@ impl Journal {
 }
 
 /// A journal that has been read.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Record {
     /// Name of the file for messages.
     pub file: String,

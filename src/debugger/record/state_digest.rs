@@ -17,7 +17,7 @@ use stickslip_scene::format::notation;
 const NONE: &str = "none";
 
 /// Computes digests of the latest version.
-#[derive(Default)]
+#[derive(Debug, Default)]
 pub struct StateDigests {
     fields: Memo<Vec<f64>, Option<u64>>,
     starts: Memo<IncrementStart, Option<u64>>,

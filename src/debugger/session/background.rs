@@ -53,7 +53,7 @@ const MANY: usize = 100;
 /// Last line of a page whose analysis was interrupted.
 const STOPPED: &str = "interrupted; :census starts it again";
 /// The remedies tried from one position so far.
-#[derive(Clone)]
+#[derive(Debug, Clone)]
 pub struct RemedyTrials {
     /// Position that the trials start from.
     pub place: LinePlace,
@@ -87,6 +87,7 @@ struct Helper {
 }
 
 /// Handle of the background thread, with its results.
+#[derive(Debug)]
 pub struct Background {
     asks: Sender<BackgroundRequest>,
     replies: Receiver<BackgroundReply>,

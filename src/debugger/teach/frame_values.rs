@@ -38,6 +38,7 @@ pub struct FrameValues {
 }
 
 /// The end of an increment.
+#[derive(Debug, Clone, PartialEq)]
 pub struct IncrementEnd {
     /// Minor iterations until the end.
     pub minors: u32,
@@ -53,7 +54,7 @@ pub struct IncrementEnd {
 
 /// The condensed problem at a slave node while all others are free: with the forces F on the node, S* moves relative to
 /// it by v = free − W F along n and t.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CondensedNode {
     /// Motion without forces (length).
     pub free: [f64; 2],

@@ -9,6 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use stickslip_core::{Mode, Model};
 
 /// Predictions, and which decisions are hidden.
+#[derive(Debug, Clone)]
 pub struct Guess {
     whose: HiddenDecisions,
     /// Frames up to this one have been seen.

@@ -15,6 +15,7 @@ use stickslip_scene::{joined, sig4};
 const CLOSE: f64 = 0.05;
 
 /// An open question, with its answer.
+#[derive(Debug, Clone)]
 pub struct TutorQuestion {
     /// The choices, if there are any.
     pub options: Vec<String>,
@@ -40,6 +41,7 @@ pub enum AnswerKind {
     Number,
 }
 
+#[derive(Debug, Clone, PartialEq)]
 enum RightAnswer {
     Mode(Mode),
     Choice(usize),

@@ -24,7 +24,7 @@ use stickslip_core::Mode;
 use stickslip_scene::Spec;
 
 /// A lesson file.
-#[derive(Deserialize)]
+#[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LessonSpec {
     /// Title, one line.
@@ -46,7 +46,7 @@ pub struct LessonSpec {
 }
 
 /// The scene of a lesson.
-#[derive(Deserialize)]
+#[derive(Debug, Clone, PartialEq, Deserialize)]
 pub enum SceneSpec {
     /// A built-in scene, or a file (relative to the lesson's folder).
     Name(String),
@@ -57,7 +57,7 @@ pub enum SceneSpec {
 }
 
 /// A step of a lesson.
-#[derive(Deserialize)]
+#[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum StepSpec {
     /// Something to read.
@@ -161,7 +161,7 @@ impl Aid {
 }
 
 /// What is asked; the solver provides the right answer.
-#[derive(Deserialize)]
+#[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum AnswerSpec {
     /// The next mode of a slave node.
@@ -186,7 +186,7 @@ pub enum AnswerSpec {
 }
 
 /// The condition that makes a choice right.
-#[derive(Deserialize)]
+#[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum When {
     /// The increment, continued from here, ends in a cycle.

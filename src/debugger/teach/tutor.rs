@@ -23,6 +23,7 @@ const HINT: &str = "?";
 const TRIES: u32 = 2;
 
 /// A lesson in progress.
+#[derive(Debug, Clone)]
 pub struct Tutor {
     lesson: Arc<Lesson>,
     /// Index of the current step; past the last one, the lesson has ended.

@@ -21,6 +21,7 @@ pub enum Line {
 const SHOWN: usize = 80;
 
 /// Reads a stream line by line.
+#[derive(Debug)]
 pub struct LineReader<R> {
     stream: R,
     most: usize,

@@ -9,7 +9,7 @@ pub use stickslip_core::step::event::Position;
 pub use stickslip_core::step::solver::ReportedForm;
 
 /// A request from the debugger. Each has one answer, except [`Request::Interrupt`] and [`Request::Bye`].
-#[derive(PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "type", rename_all = "lowercase")]
 pub enum Request {
     /// Identify yourself; answered by [`Answer::Hello`].

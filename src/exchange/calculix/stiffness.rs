@@ -9,7 +9,7 @@ use crate::problem::Matrix;
 use crate::words::Words;
 
 /// An unknown of a stiffness: a component of a node's displacement.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct MatrixUnknown {
     /// Node number in the deck.
     pub node: u64,

@@ -9,7 +9,7 @@ use crate::FormatError;
 pub(super) const HEAD: &[u8] = b"$MeshFormat";
 
 /// Versions with different sections.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Version {
     Two,
     Four,

@@ -12,6 +12,7 @@ use super::source::{DeckLocation, Done, Fault, SourceLine, plain};
 use crate::bail;
 
 /// A keyword with its parameters and data.
+#[derive(Debug)]
 pub(super) struct Card<'t> {
     /// Uppercase, without the star and without spaces.
     pub key: String,
@@ -22,6 +23,7 @@ pub(super) struct Card<'t> {
     pub lines: Vec<SourceLine<'t>>,
 }
 
+#[derive(Debug, Clone)]
 pub(super) struct Parameter {
     /// Uppercase, without spaces.
     pub name: String,
@@ -34,7 +36,7 @@ pub(super) struct Parameter {
 pub(super) const ANY: &[&str] = &["*"];
 
 /// A word of a data line.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy)]
 pub(super) struct CardCell<'t> {
     pub text: &'t str,
     line: SourceLine<'t>,

@@ -34,7 +34,7 @@ pub struct Reader {
 }
 
 /// Kind of a set's members.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum MeshKind {
     Nodes,
     Elements,

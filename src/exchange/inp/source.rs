@@ -12,7 +12,7 @@ pub struct DeckLocation {
 }
 
 /// An error in a deck.
-#[derive(Debug, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{file}:{}:{}: {message}", place.line, place.column)]
 pub struct DeckError {
     /// Name of the file.
@@ -58,7 +58,7 @@ impl From<(DeckLocation, String)> for Fault {
 }
 
 /// The texts of a deck and its include files.
-#[derive(Default)]
+#[derive(Debug, Default)]
 pub(super) struct Sources {
     pub names: Vec<String>,
     texts: Vec<String>,
@@ -67,7 +67,7 @@ pub(super) struct Sources {
 }
 
 /// A line of a deck.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy)]
 pub(super) struct SourceLine<'t> {
     pub text: &'t str,
     pub file: usize,

@@ -11,7 +11,7 @@ use stickslip_core::model::{Factor, Load, Prescribed, Pressure};
 use stickslip_core::{Body, Component, Dofs};
 
 /// The loads of a scene on the model's degrees of freedom.
-#[derive(Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Loads {
     /// Dead loads.
     pub dead: Vec<Load>,

@@ -30,7 +30,7 @@ pub(crate) struct Choices {
 }
 
 /// A model and the scene from which it was compiled.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy)]
 pub(crate) struct Compiled<'a> {
     pub(crate) spec: &'a Spec,
     pub(crate) names: &'a Names,

@@ -17,7 +17,7 @@ pub(super) struct Clock {
 }
 
 /// A step.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy)]
 struct Leg {
     /// Start time, measured from the start of the first step.
     begin: f64,
@@ -70,7 +70,7 @@ impl Clock {
 }
 
 /// Values given for a load in a step.
-#[derive(Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct StepValues {
     /// Values with their amplitudes; they are added.
     pub values: Vec<(f64, Option<usize>)>,

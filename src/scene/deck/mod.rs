@@ -96,7 +96,7 @@ impl Origin {
 }
 
 /// Names in use: sets, parts, surfaces and bodies of a deck share the names of one mesh.
-#[derive(Default)]
+#[derive(Debug, Default)]
 struct UsedNames(HashSet<String>);
 
 impl UsedNames {

@@ -85,7 +85,7 @@ macro_rules! fault {
 pub use fault;
 
 /// Reasons why a scalar of a scene cannot be set.
-#[derive(Debug, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum SetError {
     /// No scalar has this path; the message suggests similar ones.
     #[error("{0}")]
@@ -142,7 +142,7 @@ impl<P: Into<Path>> From<(P, String)> for Fault {
 ///
 /// Displayed as one line, `file:line:column: path: message`. For a value set from outside, the setting is shown instead of a
 /// line.
-#[derive(Debug, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub struct SceneError {
     /// Path of the file, or name of the built-in scene.
     pub file: String,

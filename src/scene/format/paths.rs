@@ -21,6 +21,7 @@ pub struct Override {
 }
 
 /// A scalar of a scene with its value and accepted values.
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ListedScalar {
     /// Path as a user types it.
     pub path: String,

@@ -15,7 +15,7 @@ use stickslip_core::{Friction, Mode, Settings};
 pub const HEAD: &str = "Stored";
 
 /// Nodes that may touch one rigid straight surface.
-#[derive(Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RigidContact {
     /// Node numbers in the deck.
@@ -35,7 +35,7 @@ pub struct RigidContact {
 }
 
 /// A load on each of several nodes.
-#[derive(Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct NodalLoad {
     /// Node numbers in the deck.
@@ -49,7 +49,7 @@ pub struct NodalLoad {
 }
 
 /// Nodes with prescribed displacements. Degrees of freedom restrained in the deck have no unknowns and stay fixed.
-#[derive(Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MovedNodes {
     /// Node numbers in the deck.
@@ -61,7 +61,7 @@ pub struct MovedNodes {
 }
 
 /// The file.
-#[derive(Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Stored {
     /// One-line title.

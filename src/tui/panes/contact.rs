@@ -31,7 +31,7 @@ const LABELS: u16 = 9;
 const PUSHERS: usize = 6;
 
 /// A picture of the contact.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 enum Picture {
     Cone,
     Circle,

@@ -77,7 +77,7 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
 }
 
 /// The scales of a drawn picture.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy)]
 pub struct Scales {
     /// The largest contact force; 0 without one.
     longest: f64,

@@ -47,7 +47,7 @@ const AHEAD: f64 = 2.0;
 const BEFORE: f64 = 0.99;
 
 /// Rates at one contact along a tangent of any size.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy)]
 struct Rates {
     f_n: f64,
     f_t: f64,

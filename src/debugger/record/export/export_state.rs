@@ -59,7 +59,7 @@ stickslip_core::words! {
 }
 
 /// What a picture contains, and its size.
-#[derive(Default)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct PictureRequest {
     /// The only part; `None` for shape, table and timeline.
     pub only: Option<PicturePart>,

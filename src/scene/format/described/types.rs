@@ -6,6 +6,7 @@ use serde::de::DeserializeOwned;
 use stickslip_core::model::documented::{DocAttributes, Docs, text};
 
 /// A type of the scene file, as the reference shows it.
+#[derive(Debug, Clone)]
 pub struct Type {
     /// Name in the file.
     pub name: &'static str,

@@ -20,6 +20,7 @@ const CLOSED: f64 = 1e-3;
 const EDGE: f64 = 0.1;
 
 /// A face of an element on a surface.
+#[derive(Debug, Clone)]
 pub struct SurfaceFace {
     /// Index of the element.
     pub element: usize,
@@ -72,6 +73,7 @@ pub struct SlaveGap {
 }
 
 /// A contact pair or a tie.
+#[derive(Debug, Clone)]
 pub struct PairShape {
     /// Index of its card in the deck.
     pub number: usize,

@@ -7,6 +7,7 @@ use stickslip_core::plane::range;
 pub type Vector = Vector3<f64>;
 
 /// Points sorted along the axis of their largest extent, to find near ones without a look at all of them.
+#[derive(Debug, Clone)]
 pub struct SortedPoints {
     points: Vec<Vector>,
     axis: usize,
