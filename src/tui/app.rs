@@ -14,9 +14,11 @@ use crate::log_counts::LogCounts;
 use crate::panes::help::{Help, Listing};
 use crate::panes::manual;
 use crate::panes::solver;
+use crate::shape_lines::ShapeLines;
 use crate::theme::{self, Theme};
 use crate::view::{View, context};
 use ratatui::layout::Rect;
+use std::cell::RefCell;
 use std::fmt;
 use std::time::Duration;
 use stickslip_debugger::action::{Action, ChartOf, Context, Filter, Keymap, ParseError, Sort, Ui};
@@ -152,8 +154,9 @@ pub struct App {
     pub notice: Option<String>,
     /// How much of the attached solver's log has been counted.
     pub log_counts: LogCounts,
-    /// Pan and zoom of the shape.
+    /// Pan and zoom of the shape, and its lines.
     pub camera: Camera,
+    pub(crate) lines: RefCell<Option<ShapeLines>>,
     /// Index of the first picture of the contact; it wraps around.
     pub turned: usize,
     /// Sort key of the table.
@@ -226,6 +229,7 @@ impl App {
             notice: None,
             log_counts: LogCounts::default(),
             camera: Camera::ALL,
+            lines: RefCell::default(),
             turned: 0,
             sort: Sort::Scene,
             backward: false,

@@ -44,6 +44,7 @@ mod run_shape;
 pub mod screen;
 pub mod screenshot;
 mod scroll;
+mod shape_lines;
 #[cfg(feature = "terminal")]
 pub mod terminal;
 pub mod theme;

@@ -282,6 +282,13 @@ impl Strip {
         self.letters.get(slave).copied()
     }
 
+    /// Whether everything but the margin is the same for two slave nodes.
+    pub fn is_alike(&self, one: usize, other: usize) -> bool {
+        self.marks[one] == self.marks[other]
+            && self.direction(one) == self.direction(other)
+            && self.letter(one) == self.letter(other)
+    }
+
     /// Whether two strips are equal except for the wall time.
     pub fn tells_the_same(&self, other: &Strip) -> bool {
         let numbers = |strip: &Strip| {

@@ -1,7 +1,6 @@
-//! The shape at the start of the shown major iteration: bodies in the reference (dim) and current configuration with their names if
-//! there are several, master surfaces with their outward side, supports, loads and prescribed motions, contact forces on the slave
-//! nodes, and slave nodes by the letters of their modes. Solids show the boundaries between materials, and their elements if these
-//! are large enough. Small displacements are magnified.
+//! The shape at the start of the shown major iteration: its lines (`shape_lines`), the names of the bodies if there are several,
+//! supports, loads and prescribed motions, contact forces on the slave nodes, and slave nodes by the letters of their modes. Small
+//! displacements are magnified.
 
 use crate::app::App;
 use crate::camera::Camera;
@@ -11,6 +10,7 @@ use crate::layout::Pane;
 use crate::paint;
 use crate::pane_entry::{PaneEntry, frame};
 use crate::run_shape;
+use crate::shape_lines::{self, Look};
 use crate::theme::{self, Theme};
 use crate::view::View;
 use crate::window::Window;
@@ -20,27 +20,17 @@ use ratatui::style::{Modifier, Style};
 use ratatui::text::{Line, Span};
 use std::collections::HashMap;
 use std::f64::consts::FRAC_PI_4;
-use stickslip_core::fem::lagrange;
-use stickslip_core::plane::distance;
-use stickslip_core::{BodyKind, Model, PointDeformation, SurfaceElement};
+use stickslip_core::{BodyKind, Model, PointDeformation};
 use stickslip_debugger::Examination;
 use stickslip_debugger::explain::conditions::{ConditionArrow, Conditions, Given, conditions};
-use stickslip_debugger::explain::model_facts::{self, solid_elements};
 use stickslip_debugger::explain::names;
-use stickslip_debugger::explain::outline::{self, Point, bounds, curve, outer_nodes};
+use stickslip_debugger::explain::outline::{self, Point, outer_nodes};
 use stickslip_debugger::explain::strain;
 use stickslip_scene::number;
 use unicode_width::UnicodeWidthStr;
 
-/// Length of the largest force and of a normal, as fractions of the visible extent.
+/// Length of the largest force, as a fraction of the visible extent.
 const FORCE: f64 = 0.25;
-const NORMAL: f64 = 0.04;
-/// Minimum diagonal of a drawn element, in dots.
-const ELEMENT: f64 = 12.0;
-/// Dots between two nodes of an element that is drawn straight between them.
-const CLOSE: f64 = 2.0;
-/// How many times its undeformed diagonal an element's drawn one is at most taken for.
-const GROWN: f64 = 2.0;
 /// Length of the largest rigid-body motion, as a fraction of the visible extent.
 const MOTION: f64 = 0.15;
 /// Length of the largest load and of the largest prescribed motion, as a fraction of the visible extent.
@@ -60,8 +50,6 @@ const DOUBLE_HEADS: [&str; 8] = ["⇒", "⇗", "⇑", "⇖", "⇐", "⇙", "⇓"
 const MARK: &str = "!";
 /// Mark of a solid's worst point, which is inverted or outside the range of its law.
 const WORST: &str = "◆";
-/// Dots between two normals of an element.
-const SPACING: f64 = 16.0;
 
 /// The pane.
 pub const PANE: PaneEntry = PaneEntry {
@@ -102,9 +90,7 @@ pub fn picture(buffer: &mut Buffer, inner: Rect, app: &App, view: &View) -> Opti
     if inner.is_empty() {
         return None;
     }
-    let (mut canvas, window) = field(inner, app, view);
-    bodies(&mut canvas, &window, app, view);
-    surfaces(&mut canvas, &window, app, view);
+    let (mut canvas, window) = lines(inner, app, view);
     let given = shown_conditions(view, &window);
     let (forces, longest) = forces(&window, view);
     let mut tips: HashMap<[u64; 2], Vec<Dot>> = HashMap::new();
@@ -145,30 +131,14 @@ pub fn picture(buffer: &mut Buffer, inner: Rect, app: &App, view: &View) -> Opti
     Some(Scales { longest, magnified })
 }
 
-/// The canvas, and the part of the scene that it shows.
-fn field(inner: Rect, app: &App, view: &View) -> (Canvas, Window) {
-    let field = Rect {
-        height: inner.height.saturating_sub(1).max(1),
-        ..inner
+/// The lines, and the part of the scene that they show.
+fn lines(inner: Rect, app: &App, view: &View) -> (Canvas, Window) {
+    let look = Look {
+        camera: &app.camera,
+        theme: &app.theme,
+        selected: app.slave(view),
     };
-    let canvas = Canvas::new(field);
-    let magnified = app.camera.magnified(view);
-    let projection = app.camera.projection;
-    let place = |node: usize| view.magnified(node, (magnified, projection));
-    let selected = view.model.contacts.get(app.slave(view));
-    let towards = selected
-        .map(|slave| place(slave.node))
-        .filter(|place| place.iter().all(|x| x.is_finite()));
-    let bounds = bounds(view.model, projection, &place);
-    let window = Window::new(&canvas, &bounds, &app.camera, towards);
-    (
-        canvas,
-        Window {
-            magnified,
-            projection,
-            ..window
-        },
-    )
+    shape_lines::drawn(&app.lines, inner, look, view)
 }
 
 /// The slave node closest to a screen position, if it is near enough.
@@ -179,7 +149,7 @@ pub fn slave_at(area: Rect, app: &App, view: &View, at: Position) -> Option<usiz
     if inner.is_empty() {
         return None;
     }
-    let (canvas, window) = field(inner, app, view);
+    let (canvas, window) = lines(inner, app, view);
     view.model
         .contacts
         .iter()
@@ -191,62 +161,6 @@ pub fn slave_at(area: Rect, app: &App, view: &View, at: Position) -> Option<usiz
         })
         .min()
         .map(|(_, slave)| slave)
-}
-
-/// Draws the curve of an element. Where its nodes are close, straight lines between them set the same dots.
-fn draw_curve(canvas: &mut Canvas, window: &Window, nodes: &[Point], style: Style) {
-    let dots = |points: &[Point]| -> Vec<Dot> { points.iter().map(|&p| window.dot(p)).collect() };
-    let straight = dots(nodes);
-    if straight
-        .windows(2)
-        .all(|ends| distance(ends[0], ends[1]) < CLOSE)
-    {
-        canvas.polyline(&straight, style)
-    } else {
-        canvas.polyline(&dots(&curve(nodes)), style)
-    }
-}
-
-fn bodies(canvas: &mut Canvas, window: &Window, app: &App, view: &View) {
-    let elements = || view.model.bodies.iter().flat_map(|body| body.kind.lines());
-    for element in elements() {
-        let reference: Vec<Point> = element
-            .iter()
-            .map(|node| window.projection.at(view.model, *node))
-            .collect();
-        draw_curve(canvas, window, &reference, app.theme.faint);
-    }
-    inside(canvas, window, app, view);
-    for element in elements() {
-        let now: Vec<Point> = element
-            .iter()
-            .map(|node| window.place(view, *node))
-            .collect();
-        draw_curve(canvas, window, &now, app.theme.strong);
-    }
-}
-
-/// Lines between the elements of solids if there is room, and between their materials.
-fn inside(canvas: &mut Canvas, window: &Window, app: &App, view: &View) {
-    let draw = |canvas: &mut Canvas, face: &[usize], style| {
-        let now: Vec<Point> = face.iter().map(|&node| window.place(view, node)).collect();
-        draw_curve(canvas, window, &now, style);
-    };
-    let facts = view.facts();
-    if GROWN * facts.largest_element * window.scale >= ELEMENT {
-        for element in view.model.bodies.iter().flat_map(solid_elements) {
-            let [a, b] = model_facts::diagonal(element).map(|node| window.place(view, node));
-            let size = distance(a, b) * window.scale;
-            if size >= ELEMENT && window.sees(a, size) {
-                for face in element.kind.faces_of(&element.nodes) {
-                    draw(canvas, &face, app.theme.faint);
-                }
-            }
-        }
-    }
-    for face in &facts.seams {
-        draw(canvas, face, app.theme.text);
-    }
 }
 
 /// Names of the bodies if there are several and they fit: in the middle of a solid, next to a beam.
@@ -304,67 +218,6 @@ fn mean(nodes: impl Iterator<Item = usize>, window: &Window, view: &View) -> Poi
             ([s[0] + p[0], s[1] + p[1]], count + 1.0)
         });
     sum.map(|x| x / count)
-}
-
-/// Master surfaces, with normals on the outward side.
-fn surfaces(canvas: &mut Canvas, window: &Window, app: &App, view: &View) {
-    let style = app.theme.text;
-    let mut walked = SPACING;
-    for element in view.model.surfaces.iter().flat_map(SurfaceElement::all) {
-        let nodes = outline::element(element, |node| window.place(view, node));
-        draw_curve(canvas, window, &nodes, style);
-        if view.model.space.is_some() {
-            continue;
-        }
-        // Short elements share one normal.
-        let (Some(first), Some(last)) = (nodes.first(), nodes.last()) else {
-            continue;
-        };
-        walked += distance(*last, *first) * window.scale;
-        if walked < SPACING {
-            continue;
-        }
-        walked = 0.0;
-        for (from, to) in normals(&nodes, window) {
-            canvas.line(window.dot(from), window.dot(to), style);
-        }
-    }
-}
-
-/// Normals of an element from base to tip, about evenly spaced. The outward side is on the right when traversing the nodes in
-/// order.
-fn normals(nodes: &[Point], window: &Window) -> Vec<(Point, Point)> {
-    let (Some(first), Some(last)) = (nodes.first(), nodes.last()) else {
-        return Vec::new();
-    };
-    let dots = distance(*last, *first) * window.scale;
-    let count = (dots / SPACING).clamp(1.0, 40.0) as usize;
-    let length = NORMAL * window.extent;
-    let normal = |index: usize| {
-        let xi = -1.0 + (2 * index + 1) as f64 / count as f64;
-        let shape = lagrange::shape(nodes.len(), xi);
-        let sum = |n: &[f64], axis: usize| {
-            nodes
-                .iter()
-                .zip(n)
-                .map(|(node, n)| n * node[axis])
-                .sum::<f64>()
-        };
-        let (foot, walk) = (
-            [0, 1].map(|axis| sum(&shape.n, axis)),
-            [0, 1].map(|axis| sum(&shape.d, axis)),
-        );
-        let size = walk[0].hypot(walk[1]);
-        let tip = [
-            foot[0] + length * walk[1] / size,
-            foot[1] - length * walk[0] / size,
-        ];
-        (size > 0.0).then_some((foot, tip))
-    };
-    match nodes.len() {
-        2..=lagrange::MAX_NODES => (0..count).filter_map(normal).collect(),
-        _ => Vec::new(),
-    }
 }
 
 /// Contact forces on the slave nodes as lines from the node in the direction in which the master pushes it, and the largest.
@@ -641,27 +494,4 @@ fn caption(buffer: &mut Buffer, inner: Rect, shown: Scales, moves: bool, app: &A
         ..inner
     };
     paint::lines(buffer, last, &[line]);
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use stickslip_debugger::explain::outline::Projection;
-
-    #[test]
-    fn the_normal_is_on_the_right_of_the_node_order() {
-        let window = Window {
-            middle: [0.0; 2],
-            scale: 1.0,
-            size: [1.0; 2],
-            extent: 0.5 / NORMAL,
-            magnified: 1.0,
-            projection: Projection::Oblique,
-        };
-        assert_eq!(
-            normals(&[[0.0, 0.0], [-2.0, 0.0]], &window),
-            [([-1.0, 0.0], [-1.0, 0.5])]
-        );
-        assert!(normals(&[[0.0, 0.0], [0.0, 0.0]], &window).is_empty());
-    }
 }

@@ -167,7 +167,9 @@ fn folded(rows: usize, columns: &[Column], app: &App, view: &View) -> Vec<Range<
     let alike = |one: usize, other: usize| {
         columns.iter().all(|column| {
             let strip = &view.strips[column.at];
-            cell(strip, one, finished, app) == cell(strip, other, finished, app)
+            // Faster than two cells.
+            strip.is_alike(one, other)
+                || cell(strip, one, finished, app) == cell(strip, other, finished, app)
         })
     };
     let mut all: Vec<Range<usize>> = Vec::new();
