@@ -24,7 +24,10 @@ impl App {
             return Some(WaitReason::Reading);
         }
         let view = view?;
-        if view.running && (action.asks() || self.goes_along(action)) {
+        // The session moves along the timeline.
+        let goes_along = self.panes.focus == Pane::Timeline
+            && matches!(action, Action::Ui(Ui::Move(step)) if !matches!(step, Step::Up | Step::Down));
+        if view.running && (action.asks() || goes_along) {
             return Some(WaitReason::Run);
         }
         let chooses = matches!(action, Action::Ui(Ui::Move(_) | Ui::Repeat));
@@ -48,12 +51,6 @@ impl App {
             _ => false,
         };
         awaited.then_some(WaitReason::Finding)
-    }
-
-    /// Whether an action moves along the timeline, which the session does.
-    fn goes_along(&self, action: &Action) -> bool {
-        let along = !matches!(action, Action::Ui(Ui::Move(Step::Up | Step::Down)));
-        self.panes.focus == Pane::Timeline && matches!(action, Action::Ui(Ui::Move(_))) && along
     }
 
     /// Queues a bound key after its count.

@@ -358,6 +358,9 @@ fn in_space() -> Local {
 #[test]
 fn what_is_no_problem_is_refused_with_a_sentence() {
     let folder = folder();
+    let no_hdf = put(&folder, "text.h5", b"HDF\n\xff");
+    let told = "text.h5: invalid HDF5 file: it does not begin with the signature of one";
+    assert_eq!(refusal(&folder, &no_hdf), told);
     let hdf = put(&folder, "broken.h5", b"\x89HDF\r\n\x1a\nnothing more");
     let told = match fclib::ready() {
         Ok(()) => "invalid HDF5 file",

@@ -9,7 +9,7 @@ use std::path::Path;
 use stickslip_exchange::fclib;
 use stickslip_platform::input;
 
-/// The problem in a binary file; `None` if the file is not one.
+/// The problem in a binary file; `None` if the file is not one, and not named like one.
 ///
 /// # Errors
 /// If it is one, but invalid.
@@ -19,7 +19,10 @@ pub(crate) fn from_file(
 ) -> Option<Result<Problem, SceneError>> {
     let start = input::start(Path::new(name), fclib::MARK.len() as u64).ok()?;
     if start != fclib::MARK {
-        return None;
+        let extension = Path::new(name).extension();
+        let is_named = extension.is_some_and(|own| own == "h5" || own == "hdf5");
+        let why = "invalid HDF5 file: it does not begin with the signature of one";
+        return is_named.then(|| Err(SceneError::whole(name, why)));
     }
     let problem = || {
         let large = "no interface problem is larger";
