@@ -8,10 +8,10 @@
 //! 0 <= φ− = tan φ F_n + c + F_t     λ− >= 0,       slip = λ+ − λ−
 //! ```
 //!
-//! and without friction only the first line ([`Form::Klarbring`]). In this form cohesion also acts on open nodes, which Coulomb's
+//! and without friction only the first line ([`CoulombForm::Klarbring`]). In this form cohesion also acts on open nodes, which Coulomb's
 //! law excludes; therefore the result is checked afterwards.
 //!
-//! In the form of Stewart and Trinkle (Int. J. Numer. Meth. Engng 39, 1996, [`Form::Copositive`]) the friction force is split into
+//! In the form of Stewart and Trinkle (Int. J. Numer. Meth. Engng 39, 1996, [`CoulombForm::Copositive`]) the friction force is split into
 //! two opposite parts:
 //!
 //! ```text
@@ -46,29 +46,29 @@ const PIVOTS: usize = 100;
 
 /// How Coulomb's law is written.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Form {
+pub enum CoulombForm {
     /// With the unused friction in both directions.
     Klarbring,
     /// With the friction force in two parts.
     Copositive,
 }
 
-impl Form {
-    /// Number of starts. [`Form::Klarbring`]: all nodes free, their initial modes, all fixed, all sliding.
-    /// [`Form::Copositive`]: the first relaxes all rows equally, the others relax each row by 0.2 to 1; each start has different
+impl CoulombForm {
+    /// Number of starts. [`CoulombForm::Klarbring`]: all nodes free, their initial modes, all fixed, all sliding.
+    /// [`CoulombForm::Copositive`]: the first relaxes all rows equally, the others relax each row by 0.2 to 1; each start has different
     /// shifts.
     pub fn starts(self) -> usize {
         match self {
-            Form::Klarbring => 4,
-            Form::Copositive => 8,
+            CoulombForm::Klarbring => 4,
+            CoulombForm::Copositive => 8,
         }
     }
 
     /// Rows of a node with friction besides those of its two components.
     fn more_rows(self) -> usize {
         match self {
-            Form::Klarbring => 1,
-            Form::Copositive => 2,
+            CoulombForm::Klarbring => 1,
+            CoulombForm::Copositive => 2,
         }
     }
 
@@ -80,7 +80,7 @@ impl Form {
         number: usize,
     ) -> Vec<AssumedMode> {
         let of = |(node, &brought): (&ProblemNode, &AssumedMode)| match (number, node.choices()) {
-            _ if self == Form::Copositive => AssumedMode::Free,
+            _ if self == CoulombForm::Copositive => AssumedMode::Free,
             (0, _) | (_, [AssumedMode::Free]) => AssumedMode::Free,
             (1, _) => brought,
             (2, choices) if choices.contains(&AssumedMode::Fixed) => AssumedMode::Fixed,
@@ -146,7 +146,7 @@ pub struct Pivoting {
     /// In the problem's units of force and length.
     pub tableau: Tableau,
     /// How the law is written.
-    pub form: Form,
+    pub form: CoulombForm,
     /// Node and kind of every variable, and the first variable of every node.
     variables: Vec<(usize, VariableKind)>,
     firsts: Vec<usize>,
@@ -157,10 +157,10 @@ pub struct Pivoting {
 }
 
 impl Pivoting {
-    /// The tableau of a problem at start `number`, which is less than [`Form::starts`]; `brought` are the initial modes, one per
+    /// The tableau of a problem at start `number`, which is less than [`CoulombForm::starts`]; `brought` are the initial modes, one per
     /// node. `None` if the basis of that start is singular, or memory is insufficient.
     pub fn new(
-        form: Form,
+        form: CoulombForm,
         problem: &InterfaceProblem,
         brought: &[AssumedMode],
         number: usize,
@@ -214,14 +214,14 @@ impl Pivoting {
                 });
                 continue;
             };
-            if form == Form::Klarbring {
+            if form == CoulombForm::Klarbring {
                 columns.add_force(t, -cohesion, &mut rhs);
             }
             let slipped = node.state.slipped(&problem.settings) + node.prescribed[1];
             columns.add_motion(t, slipped, &mut rhs);
             match form {
-                Form::Klarbring => path.add_unused(place, &columns, extra, &mut rhs),
-                Form::Copositive => path.add_parts(place, &columns, extra, &mut rhs),
+                CoulombForm::Klarbring => path.add_unused(place, &columns, extra, &mut rhs),
+                CoulombForm::Copositive => path.add_parts(place, &columns, extra, &mut rhs),
             }
             extra += form.more_rows();
         }
@@ -230,8 +230,8 @@ impl Pivoting {
             .collect();
         let shift = SHIFT * SHIFT_FALLS.powi(number as i32);
         let begin = match form {
-            Form::Klarbring => PathStart::PLAIN,
-            Form::Copositive => PathStart {
+            CoulombForm::Klarbring => PathStart::PLAIN,
+            CoulombForm::Copositive => PathStart {
                 cover: &|row| match number {
                     0 => 1.0,
                     _ => 0.2 + 0.8 * spread(row, number),
@@ -319,7 +319,7 @@ impl Pivoting {
     pub fn ended(&self) -> Option<PathEnd> {
         match self.tableau.ended() {
             Some(PathEnd::Ray)
-                if self.form == Form::Copositive && self.tableau.cover() <= NEARLY =>
+                if self.form == CoulombForm::Copositive && self.tableau.cover() <= NEARLY =>
             {
                 Some(PathEnd::Solved)
             }
@@ -359,7 +359,7 @@ impl Pivoting {
     pub fn assumed(&self, place: usize) -> AssumedMode {
         let basic = |kind| self.is_basic(place, kind);
         let sliding = |plus| match self.form {
-            Form::Klarbring => basic(VariableKind::Slip { plus }),
+            CoulombForm::Klarbring => basic(VariableKind::Slip { plus }),
             _ if basic(VariableKind::Room) || !basic(VariableKind::Speed) => false,
             _ => {
                 let minus = basic(VariableKind::Friction { plus: false })
@@ -389,7 +389,7 @@ impl Pivoting {
         let f_n = self.force * value(VariableKind::Force);
         let gap = self.length * value(VariableKind::Gap);
         let (f_t, gap, slip) = match self.form {
-            Form::Klarbring => (
+            CoulombForm::Klarbring => (
                 self.friction[place].map_or(0.0, |(coefficient, cohesion)| {
                     let unused = value(VariableKind::Slack { plus: true });
                     coefficient * f_n + cohesion - self.force * unused
@@ -398,7 +398,7 @@ impl Pivoting {
                 value(VariableKind::Slip { plus: true })
                     - value(VariableKind::Slip { plus: false }),
             ),
-            Form::Copositive => (
+            CoulombForm::Copositive => (
                 self.force * (part(true) - part(false)),
                 // Without a contact force, or a surface.
                 match self.find(place, VariableKind::Gap) {

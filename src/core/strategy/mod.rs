@@ -12,7 +12,7 @@ mod table2;
 
 pub use gauss_seidel::SETTLED;
 
-use crate::interface::pivoting::Form;
+use crate::interface::pivoting::CoulombForm;
 use crate::{BoundUpdate, Method, Settings, Strategy};
 use pivoting::PivotingStrategy;
 use std::ops::Deref;
@@ -48,9 +48,9 @@ pub fn method(strategy: Strategy) -> &'static dyn Method {
         Strategy::SlidingLeast => &least::SlidingLeast,
         Strategy::Block => &block::Block,
         Strategy::Newton => &newton::Newton,
-        Strategy::Lemke => &PivotingStrategy(Form::Klarbring),
+        Strategy::Lemke => &PivotingStrategy(CoulombForm::Klarbring),
         Strategy::Census => &census::CensusStrategy,
-        Strategy::Copositive => &PivotingStrategy(Form::Copositive),
+        Strategy::Copositive => &PivotingStrategy(CoulombForm::Copositive),
         Strategy::GaussSeidel => &gauss_seidel::GaussSeidel,
     }
 }

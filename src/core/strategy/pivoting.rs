@@ -6,12 +6,12 @@
 //! ([`crate::interface::vertex`]).
 
 use crate::interface::method::{NoProposal, Proposal, Search, SearchInput};
-use crate::interface::pivoting::{Form, PathEnd, Pivoting};
+use crate::interface::pivoting::{CoulombForm, PathEnd, Pivoting};
 use crate::interface::vertex::vertices;
 use crate::{NotFound, Rule, TestedQuantity};
 
 /// Pivoting with the law in one form.
-pub struct PivotingStrategy(pub Form);
+pub struct PivotingStrategy(pub CoulombForm);
 
 /// Pivots per minor iteration on a long path.
 const STRIDE: usize = 50;
@@ -27,7 +27,7 @@ impl PivotPath {
     /// Performs the pivots of a minor iteration.
     fn go(&mut self) {
         let tableau = &mut self.pivoting.tableau;
-        let long = self.pivoting.form == Form::Copositive && self.step >= tableau.rows();
+        let long = self.pivoting.form == CoulombForm::Copositive && self.step >= tableau.rows();
         let most = if long { STRIDE } else { 1 };
         // A path that starts at the solution has already ended.
         let done = (0..most).map_while(|_| tableau.pivot()).count();
@@ -46,7 +46,7 @@ impl Search for PivotingStrategy {
         path.go();
         let pivoting = &path.pivoting;
         let ended = pivoting.ended();
-        let is_copositive = self.0 == Form::Copositive;
+        let is_copositive = self.0 == CoulombForm::Copositive;
         if is_copositive && ended == Some(PathEnd::Astray) {
             let pivots = pivoting.tableau.pivots();
             return Err(NotFound::Astray { pivots }.into());

@@ -7,7 +7,7 @@
 use super::diagnosis::{answer_words, condition_words};
 use stickslip_core::interface::census::search;
 use stickslip_core::interface::definite::Compliance;
-use stickslip_core::interface::pivoting::{Form, PathEnd, Pivoting};
+use stickslip_core::interface::pivoting::{CoulombForm, PathEnd, Pivoting};
 use stickslip_core::interface::problem::Answer;
 use stickslip_core::strategy::{in_force, method, rungs};
 use stickslip_core::{AssumedMode, InterfaceProblem, Strategy, Trials};
@@ -190,8 +190,8 @@ fn by_pivoting(problem: &InterfaceProblem, tolerance: f64) -> Option<Answer> {
         })
         .collect();
     let mut trials = Trials::new(problem)?;
-    (0..Form::Klarbring.starts()).find_map(|start| {
-        let mut path = Pivoting::new(Form::Klarbring, problem, &brought, start)?;
+    (0..CoulombForm::Klarbring.starts()).find_map(|start| {
+        let mut path = Pivoting::new(CoulombForm::Klarbring, problem, &brought, start)?;
         while path.tableau.ended().is_none() {
             path.tableau.pivot()?;
         }
