@@ -180,8 +180,8 @@ impl Action {
     }
 }
 
-/// Whether a node of our own solver is forced, so that it can be released. Before an intervention a release goes on without that
-/// one, in a new branch. An attached solver may know more than it reports.
+/// Refuses to release a node that is not forced. Allowed before an intervention, because the release then starts a branch without
+/// that intervention, and with an attached solver, which may not report all that it holds.
 fn released(slave: usize, context: &Context) -> Result<(), String> {
     let (Some(state), Some(model), None) = (context.state, context.model, context.offers) else {
         return Ok(());

@@ -103,9 +103,7 @@ impl TutorQuestion {
         match &self.right {
             RightAnswer::Mode(right) => match action::mode(word) {
                 Some(mode) => Ok(mode == *right),
-                None => Err(refusal!(
-                    "invalid mode '{word}'; expected free, sliding or fixed"
-                )),
+                None => Err(Refusal::no_mode(word)),
             },
             RightAnswer::Choice(right) => match word.parse::<usize>() {
                 Ok(number) if (1..=self.options.len()).contains(&number) => {
