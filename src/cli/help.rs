@@ -7,7 +7,6 @@ use std::process::Stdio;
 use std::sync::Arc;
 use stickslip_manual::{self as manual, Page, render};
 use stickslip_platform::{system, terminal};
-use stickslip_scene::joined;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -63,54 +62,6 @@ fn search(word: &str) -> Result<Exit, Error> {
     }
     say(&text)?;
     Ok(Exit::Good)
-}
-
-/// All subcommands with their arguments and options, for the manual.
-pub fn commands(mut program: clap::Command) -> String {
-    program.build();
-    let mut text = String::new();
-    for command in std::iter::once(&program).chain(program.get_subcommands()) {
-        let name = match command.get_name() {
-            "stickslip" => "stickslip [SCENE]".to_owned(),
-            name => format!("stickslip {name}"),
-        };
-        let about = command
-            .get_about()
-            .map(ToString::to_string)
-            .unwrap_or_default();
-        text += &format!("## {name}\n\n{}.\n\n", about.trim_end_matches('.'));
-        for argument in command
-            .get_arguments()
-            .filter(|argument| argument.get_id() != "help")
-        {
-            let help = argument
-                .get_help()
-                .map(ToString::to_string)
-                .unwrap_or_default();
-            text += format!("- `{}`: {help}", written(argument)).trim_end_matches([':', ' ']);
-            text.push('\n');
-        }
-        text = text.trim_end().to_owned() + "\n\n";
-    }
-    text.trim_end().to_owned() + "\n"
-}
-
-/// An argument as it is typed.
-fn written(argument: &clap::Arg) -> String {
-    let takes = argument.get_action().takes_values();
-    let values = joined(
-        argument
-            .get_value_names()
-            .unwrap_or_default()
-            .iter()
-            .filter(|_| takes)
-            .map(clap::builder::Str::as_str),
-        " ",
-    );
-    let short = argument.get_short().map(|short| format!("-{short}"));
-    let long = argument.get_long().map(|long| format!("--{long}"));
-    let flags = joined(short.into_iter().chain(long), ", ");
-    format!("{flags} {values}").trim().to_owned()
 }
 
 /// Shows a page, through a pager on a terminal, otherwise as plain text.

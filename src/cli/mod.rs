@@ -210,7 +210,7 @@ pub fn main() -> ExitCode {
 }
 
 /// The command line, with the subcommands in groups.
-fn program() -> clap::Command {
+pub fn program() -> clap::Command {
     groups::grouped(Cli::command())
 }
 
@@ -218,26 +218,9 @@ fn parsed() -> Result<Cli, clap::Error> {
     Cli::from_arg_matches(&program().try_get_matches()?)
 }
 
-/// All subcommands with their arguments and options, for the manual.
-pub fn commands() -> String {
-    help::commands(Cli::command())
-}
-
 /// The records that `--json` writes with their fields, for the manual.
 pub fn json_records() -> String {
     records::markdown()
-}
-
-/// Checks a command line without running it; `words` follow the program's name.
-///
-/// # Errors
-/// The message of the parser.
-pub fn is_command_line(words: &[&str]) -> Result<(), String> {
-    let program = std::iter::once("stickslip");
-    match Cli::try_parse_from(program.chain(words.iter().copied())) {
-        Err(error) if error.use_stderr() => Err(error.to_string()),
-        _ => Ok(()),
-    }
 }
 
 #[cfg(test)]

@@ -1,8 +1,10 @@
 //! What README and manual show of the program: the part between each marker and its end is made by the program.
 
+mod scene_reference;
+
 use std::fs;
 use std::path::Path;
-use stickslip::format::markdown;
+use stickslip::scene::joined;
 use stickslip::teach::Lesson;
 use stickslip::tui::{Debugger, theme::Theme};
 
@@ -57,10 +59,10 @@ fn made(marker: &str) -> Option<String> {
         "lesson" => Some(lesson(what)),
         "python" => Some(python(what)),
         "keys" => list(stickslip::action::markdown()),
-        "commands" => list(stickslip::cli::commands()),
+        "commands" => list(commands(stickslip::cli::program())),
         "records" => list(stickslip::cli::json_records()),
-        "reference" => list(markdown::types().unwrap()),
-        "settings" => list(markdown::settings().unwrap()),
+        "reference" => list(scene_reference::types().unwrap()),
+        "settings" => list(scene_reference::settings().unwrap()),
         "keywords" => list(keywords()),
         "causes" => list(causes()),
         "packages" => list(packages()),
@@ -198,6 +200,54 @@ fn keywords() -> String {
     KEYWORDS.iter().map(line).collect()
 }
 
+/// All subcommands with their arguments and options, for the manual.
+fn commands(mut program: clap::Command) -> String {
+    program.build();
+    let mut text = String::new();
+    for command in std::iter::once(&program).chain(program.get_subcommands()) {
+        let name = match command.get_name() {
+            "stickslip" => "stickslip [SCENE]".to_owned(),
+            name => format!("stickslip {name}"),
+        };
+        let about = command
+            .get_about()
+            .map(ToString::to_string)
+            .unwrap_or_default();
+        text += &format!("## {name}\n\n{}.\n\n", about.trim_end_matches('.'));
+        for argument in command
+            .get_arguments()
+            .filter(|argument| argument.get_id() != "help")
+        {
+            let help = argument
+                .get_help()
+                .map(ToString::to_string)
+                .unwrap_or_default();
+            text += format!("- `{}`: {help}", written(argument)).trim_end_matches([':', ' ']);
+            text.push('\n');
+        }
+        text = text.trim_end().to_owned() + "\n\n";
+    }
+    text.trim_end().to_owned() + "\n"
+}
+
+/// An argument as it is typed.
+fn written(argument: &clap::Arg) -> String {
+    let takes = argument.get_action().takes_values();
+    let values = joined(
+        argument
+            .get_value_names()
+            .unwrap_or_default()
+            .iter()
+            .filter(|_| takes)
+            .map(clap::builder::Str::as_str),
+        " ",
+    );
+    let short = argument.get_short().map(|short| format!("-{short}"));
+    let long = argument.get_long().map(|long| format!("--{long}"));
+    let flags = joined(short.into_iter().chain(long), ", ");
+    format!("{flags} {values}").trim().to_owned()
+}
+
 /// The decks that fail in CalculiX: what happened, the diagnosis, the cure, and what happens with it.
 fn causes() -> String {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/calculix");
@@ -296,4 +346,13 @@ pub fn arguments(line: &str) -> Option<Vec<&str>> {
         words.push("--help");
     }
     Some(words)
+}
+
+/// Checks a command line without running it; `words` follow the program's name.
+pub fn is_command_line(words: &[&str]) -> Result<(), String> {
+    let words = std::iter::once("stickslip").chain(words.iter().copied());
+    match stickslip::cli::program().try_get_matches_from(words) {
+        Err(error) if error.use_stderr() => Err(error.to_string()),
+        _ => Ok(()),
+    }
 }

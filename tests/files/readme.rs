@@ -33,7 +33,7 @@ fn every_command_in_the_readme_can_be_typed() {
         .collect();
     assert!(commands.len() > 5);
     for words in commands {
-        stickslip::cli::is_command_line(&words)
+        pages::is_command_line(&words)
             .unwrap_or_else(|error| panic!("{words:?}: {error}"));
     }
 }

@@ -2,8 +2,7 @@
 //!
 //! - [`spec`]: the types of the file; [`loads`]: loads; [`arc`]: arc-length control; [`given`]: meshes node by node;
 //!   [`condensed`]: files with an interface problem; [`stored`]: files about a stiffness stored by another program.
-//! - [`described`]: descriptions of the types, used by [`paths`] and by the [`reference`](mod@reference), which [`markdown`]
-//!   writes.
+//! - [`described`]: descriptions of the types, used by [`paths`] and by the [`reference`](mod@reference).
 //! - [`notation`]: the RON dialect; [`read`]: converts text to values; [`locate`]: converts paths to lines.
 //! - [`paths`]: lists and sets every scalar of a scene by its path.
 //! - [`error`]: errors with their location.
@@ -19,7 +18,6 @@ pub mod given;
 pub mod in_space;
 pub mod loads;
 pub mod locate;
-pub mod markdown;
 pub mod monitor;
 pub mod notation;
 pub mod paths;

@@ -1,8 +1,8 @@
 //! The scene reference as Markdown for the manual's pages.
 
-use super::described::{Field, Form, Type};
-use super::reference::reference;
-use crate::joined;
+use stickslip::format::described::{Field, Form, Type};
+use stickslip::format::reference::reference;
+use stickslip::scene::joined;
 
 /// All types of the file except the settings, which have a separate page.
 ///
