@@ -12,6 +12,7 @@ use stickslip_platform::files::{self, FileError};
 use stickslip_scene::builtin;
 use stickslip_scene::shown;
 use stickslip_scene::{Scene, SceneError};
+use stickslip_study::run_error::RunError;
 
 /// Exit codes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -66,6 +67,15 @@ macro_rules! usage {
 }
 pub(crate) use usage;
 
+impl From<RunError> for Error {
+    fn from(error: RunError) -> Error {
+        match error {
+            RunError::Again(why) => Error::Again(why),
+            other => Error::usage(other),
+        }
+    }
+}
+
 impl Error {
     /// Another error as one of usage.
     pub fn usage(error: impl ToString) -> Error {
@@ -104,33 +114,19 @@ pub struct SetArgs {
     pub set: Vec<(String, String)>,
 }
 
-/// An invalid value on the command line, with the expected form.
-#[derive(Debug, thiserror::Error)]
-#[error("{0}")]
-pub struct NoValue(String);
-
-impl NoValue {
-    /// An error that states the expected form.
-    pub fn new(must_be: impl Into<String>) -> NoValue {
-        NoValue(must_be.into())
-    }
-}
-
-fn assignment(text: &str) -> Result<(String, String), NoValue> {
+fn assignment(text: &str) -> Result<(String, String), String> {
     match text.split_once('=') {
         Some((path, value)) => Ok((path.to_owned(), value.to_owned())),
-        None => Err(NoValue::new(
-            "expected PATH=VALUE, such as friction.angle=20",
-        )),
+        None => Err("expected PATH=VALUE, such as friction.angle=20".to_owned()),
     }
 }
 
 /// Parses a tolerance. A comparison with NaN would find no difference.
-pub fn tolerance(text: &str) -> Result<f64, NoValue> {
+pub fn tolerance(text: &str) -> Result<f64, String> {
     text.parse::<f64>()
         .ok()
         .filter(|part| *part >= 0.0 && part.is_finite())
-        .ok_or_else(|| NoValue::new("expected a number that is at least 0, such as 1e-9"))
+        .ok_or_else(|| "expected a number that is at least 0, such as 1e-9".to_owned())
 }
 
 /// Quotes a word for a shell.

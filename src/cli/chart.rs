@@ -1,16 +1,16 @@
 //! `stickslip chart`: error over cost for different settings.
 
-use super::base::{Error, Exit, NoValue, SetArgs, usage};
+use super::base::{Error, Exit, SetArgs, usage};
 use super::interrupt::Interrupt;
 use super::outputs::Outputs;
-use super::sweep::{Report, SweepArgs, failed};
+use super::sweep::{Report, SweepArgs};
 use std::path::{Path, PathBuf};
 use stickslip_core::counted;
 use stickslip_scene::number::significant;
-use stickslip_scene::readers::mistaken;
+use stickslip_scene::readers::or_mistaken;
 use stickslip_scene::{FileKind, aligned, sig2, sig6};
 use stickslip_study::chart_file::{Chart, Truth};
-use stickslip_study::chart_runs::{PlannedChart, PrecisionError, sweep};
+use stickslip_study::chart_runs::{PlannedChart, sweep};
 use stickslip_study::precision::{Cost, Measure, Point, Precision, ROUND_OFF};
 use stickslip_study::precision_table;
 use stickslip_study::{Vary, precision_figure};
@@ -66,22 +66,22 @@ pub struct Args {
     sweep: SweepArgs,
 }
 
-fn target(text: &str) -> Result<f64, NoValue> {
+fn target(text: &str) -> Result<f64, String> {
     text.parse::<f64>()
         .ok()
         .filter(|t| *t > 0.0 && t.is_finite())
-        .ok_or_else(|| NoValue::new("expected a positive number, such as 1e-3"))
+        .ok_or_else(|| "expected a positive number, such as 1e-3".to_owned())
 }
 
-fn repeats(text: &str) -> Result<usize, NoValue> {
+fn repeats(text: &str) -> Result<usize, String> {
     const MOST: usize = 1000;
     let count = text.parse().ok().filter(|n| (1..=MOST).contains(n));
-    count.ok_or_else(|| NoValue::new(format!("expected a whole number from 1 to {MOST}")))
+    count.ok_or_else(|| format!("expected a whole number from 1 to {MOST}"))
 }
 
-fn cost(text: &str) -> Result<Cost, NoValue> {
+fn cost(text: &str) -> Result<Cost, String> {
     let all = Cost::NAMES.join(", ");
-    Cost::from_word(text).ok_or_else(|| NoValue::new(format!("expected one of {all}")))
+    Cost::from_word(text).ok_or_else(|| format!("expected one of {all}"))
 }
 
 pub fn main(args: &Args) -> Result<Exit, Error> {
@@ -114,7 +114,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
             Some(file) => chart.truth = Truth::Table(Path::new(file).to_owned()),
             None => {}
         }
-        planned.push(PlannedChart::new(chart).map_err(refused)?);
+        planned.push(PlannedChart::new(chart)?);
     }
     let measure = Measure {
         cost: args.cost,
@@ -127,28 +127,18 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         for planned in &planned {
             let rest = results.split_off(planned.runs());
             let own = std::mem::replace(&mut results, rest);
-            charts.push(Precision::new(planned, own, measure).map_err(refused)?);
+            charts.push(Precision::new(planned, own, measure)?);
         }
         Ok(report(with_peers(charts, &peers)?, args.error_on_x))
     })
 }
 
-fn refused(error: PrecisionError) -> Error {
-    match error {
-        PrecisionError::Run(error) => failed(*error),
-        error => Error::usage(error),
-    }
-}
-
 /// The charts of a table.
 fn table(file: &Path, args: &Args) -> Result<Vec<Precision>, Error> {
     let name = file.display().to_string();
-    let text = precision_table::open(file).map_err(Error::usage)?;
+    let text = precision_table::open(file)?;
     let charts = precision_table::read(&name, &text, args.cost, args.target);
-    charts.map_err(|error| {
-        let text = mistaken(&name, &text, FileKind::ChartTable);
-        Error::Usage(text.map_or(error.to_string(), |text| format!("{name}: {text}")))
-    })
+    Ok(charts.map_err(|error| or_mistaken(error, &name, &text, FileKind::ChartTable))?)
 }
 
 /// Adds the runs of other programs to the charts of their scenes.

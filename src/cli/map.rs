@@ -1,6 +1,6 @@
 //! `stickslip map`: where the iterations converge.
 
-use super::base::{Error, Exit, NoValue, SetArgs, put, tolerance, usage};
+use super::base::{Error, Exit, SetArgs, put, tolerance, usage};
 use super::interrupt::Interrupt;
 use super::sweep::{Report, SweepArgs};
 use std::ops::RangeInclusive;
@@ -61,7 +61,7 @@ pub struct Args {
     sweep: SweepArgs,
 }
 
-fn range(text: &str) -> Result<RangeInclusive<usize>, NoValue> {
+fn range(text: &str) -> Result<RangeInclusive<usize>, String> {
     let number = |text: &str| text.trim().parse::<usize>().ok();
     let ends = match text.split_once("..") {
         Some((low, high)) => number(low).zip(number(high.trim_start_matches('='))),
@@ -71,21 +71,17 @@ fn range(text: &str) -> Result<RangeInclusive<usize>, NoValue> {
     const MOST: usize = 6;
     match ends {
         Some((low, high)) if (1..=high).contains(&low) && high <= MOST => Ok(low..=high),
-        _ => Err(NoValue::new(format!(
-            "expected K or A..B, within 1 to {MOST}"
-        ))),
+        _ => Err(format!("expected K or A..B, within 1 to {MOST}")),
     }
 }
 
-fn count(text: &str) -> Result<usize, NoValue> {
+fn count(text: &str) -> Result<usize, String> {
     let count = text
         .parse::<u64>()
         .ok()
         .filter(|n| (1..=MOST_CASES).contains(n));
     count.map(|n| n as usize).ok_or_else(|| {
-        NoValue::new(format!(
-            "expected a whole number from 1 to {MOST_CASES}; for more, run several seeds"
-        ))
+        format!("expected a whole number from 1 to {MOST_CASES}; for more, run several seeds")
     })
 }
 

@@ -1,6 +1,6 @@
 //! Output of sweeps: tables, pictures, progress, and tables for people.
 
-use super::base::{Error, NoValue, distinct};
+use super::base::{Error, distinct};
 use super::sink::Sink;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{self, IsTerminal};
@@ -67,9 +67,9 @@ impl OutputArgs {
     }
 }
 
-fn jobs(text: &str) -> Result<NonZeroUsize, NoValue> {
+fn jobs(text: &str) -> Result<NonZeroUsize, String> {
     let count = text.parse().ok();
-    count.ok_or_else(|| NoValue::new("expected a whole number from 1"))
+    count.ok_or_else(|| "expected a whole number from 1".to_owned())
 }
 
 /// Output files, opened before the sweep runs, so that its results can be written.

@@ -1,6 +1,6 @@
 //! Positions in a run, as given to `--at`.
 
-use super::base::{Exit, NoValue, notify};
+use super::base::{Exit, notify};
 use super::interrupt::Interrupt;
 use std::fmt;
 use std::ops::ControlFlow;
@@ -20,18 +20,18 @@ pub struct RunPosition {
 }
 
 impl FromStr for RunPosition {
-    type Err = NoValue;
+    type Err = String;
 
-    fn from_str(text: &str) -> Result<RunPosition, NoValue> {
+    fn from_str(text: &str) -> Result<RunPosition, String> {
         match parts(text) {
             Some([Some(increment), major, minor]) => Ok(RunPosition {
                 increment,
                 major,
                 minor,
             }),
-            _ => Err(NoValue::new(
-                "expected INC, INC.MAJOR or INC.MAJOR.MINOR, with whole numbers from 1",
-            )),
+            _ => Err(
+                "expected INC, INC.MAJOR or INC.MAJOR.MINOR, with whole numbers from 1".to_owned(),
+            ),
         }
     }
 }

@@ -39,13 +39,11 @@ pub struct SolverArgs {
     pub exchange: Option<PathBuf>,
 }
 
-fn seconds(text: &str) -> Result<f64, super::base::NoValue> {
+fn seconds(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         // A year means no limit.
         Ok(seconds) if seconds > 0.0 && seconds <= 3.2e7 => Ok(seconds),
-        _ => Err(super::base::NoValue::new(
-            "expected a positive number of seconds",
-        )),
+        _ => Err("expected a positive number of seconds".to_owned()),
     }
 }
 

@@ -7,17 +7,17 @@ use std::path::PathBuf;
 use stickslip_scene::joined;
 use stickslip_study::Watch;
 use stickslip_study::drawn::PlotError;
-use stickslip_study::log::{LogError, Outcome};
+use stickslip_study::log::Outcome;
 use stickslip_study::origin;
-use stickslip_study::shard::{NoShard, Shard, ranges};
+use stickslip_study::shard::{Shard, ranges};
 use stickslip_study::sheet::Sheet;
-use stickslip_study::sweep::{MissingCells, ResultStorage, RunError, Store, Sweep};
+use stickslip_study::sweep::{MissingCells, ResultStorage, Store, Sweep};
 
 /// Which part of a sweep is run, and where its results are stored and written.
 #[derive(Debug, clap::Args)]
 pub struct SweepArgs {
     /// Runs only the cells of shard K of N, and writes their rows (--csv) or stores them (--log); page cluster
-    #[arg(long, value_name = "K/N", value_parser = shard)]
+    #[arg(long, value_name = "K/N")]
     shard: Option<Shard>,
     /// Stores each result in this file as it arrives, and continues from the results in it
     #[arg(long, value_name = "FILE", alias = "resume")]
@@ -27,10 +27,6 @@ pub struct SweepArgs {
     merge: Vec<PathBuf>,
     #[command(flatten)]
     pub out: OutputArgs,
-}
-
-fn shard(text: &str) -> Result<Shard, NoShard> {
-    text.parse()
 }
 
 /// The results of a sweep.
@@ -95,7 +91,7 @@ impl SweepArgs {
         let keeping = self.keeping()?;
         // Opened before the runs, so that their results can be written.
         let outputs = Outputs::open(&self.out)?;
-        let store = Store::open(&keeping, sweep).map_err(|e| failed(e.into()))?;
+        let store = Store::open(&keeping, sweep)?;
         let (cells, [unit, step]) = (&sweep.cells, sweep.units);
         if let Some(missing) = store.missing(cells) {
             report_missing(&missing, cells.len(), unit);
@@ -109,7 +105,7 @@ impl SweepArgs {
         };
         let results = sweep.run_with(&store, self.out.jobs(), &watch);
         progress.finish_and_clear();
-        let mut results = results.map_err(failed)?;
+        let mut results = results?;
         if let Some(shard) = self.part() {
             for (cell, result) in cells.iter().zip(&mut results) {
                 result.take_if(|_| !store.does(cell));
@@ -166,16 +162,6 @@ fn report_machines<T: Outcome>(store: &Store<T>) {
         notify(&format!(
             "computed on {others}, merged on {here}, which tables and pictures name; last digits may differ"
         ));
-    }
-}
-
-/// Classifies an error of a sweep: `Again` if another attempt may succeed.
-pub fn failed(error: RunError) -> Error {
-    match error {
-        RunError::Log(LogError::Busy(_) | LogError::File { .. }) | RunError::Threads(_) => {
-            Error::Again(error.to_string())
-        }
-        _ => Error::usage(error),
     }
 }
 

@@ -6,7 +6,6 @@ use stickslip_manual::NoPage;
 use stickslip_platform::files::FileError;
 use stickslip_scene::SceneError;
 use stickslip_scene::format::error::SetError;
-use stickslip_study::csv::TableError;
 use stickslip_study::drawn::PlotError;
 
 /// Why something is not done, for the user, with a hint at what would work.
@@ -52,5 +51,5 @@ macro_rules! refused_by {
 pub(crate) use {refusal, refused_by};
 
 refused_by!(
-    FileError, NoPage, PlotError, SceneError, SetError, SolverLost, TableError
+    FileError, NoPage, PlotError, SceneError, SetError, SolverLost
 );

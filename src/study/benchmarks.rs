@@ -24,8 +24,9 @@
 use super::figure::assigned;
 use super::read::pairs;
 use super::result::{CaseEnd, Row, Run};
+use super::run_error::RunError;
 use super::solver_pool::{SolverPool, Watch, one};
-use super::sweep::{RunError, side_by_side};
+use super::sweep::side_by_side;
 use serde::Deserialize;
 use std::fmt;
 use std::fmt::Write;

@@ -4,22 +4,22 @@
 //! increment at each of them, so that its error does not depend on the other runs of the chart.
 
 use super::chart_file::{Chart, Truth};
-use super::csv::TableError;
 use super::figure::name;
 use super::log::{Outcome, same};
 use super::plan::{Case, Plan};
 use super::read::{Study, Vary};
 use super::reference::{Reference, SAME_LOAD};
 use super::result::Run;
+use super::run_error::RunError;
 use super::solver_pool::{SolverPool, Watch, one};
-use super::sweep::{RunError, Sweep};
+use super::sweep::Sweep;
 use super::sweep_input::Input;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use stickslip_core::Model;
 use stickslip_core::plane::max_abs;
 use stickslip_platform::system;
-use stickslip_scene::{SceneError, increments};
+use stickslip_scene::increments;
 
 /// Runs that take this long in total (seconds) are not repeated again.
 const LONG: f64 = 20.0;
@@ -58,32 +58,6 @@ impl Outcome for TimedRun {
     }
 }
 
-/// Why a chart cannot be made.
-#[derive(Debug, thiserror::Error)]
-pub enum PrecisionError {
-    /// The reference table cannot be read.
-    #[error(transparent)]
-    Table(#[from] TableError),
-    /// There is no reference.
-    #[error("{0}")]
-    Reference(String),
-    /// The runs cannot be computed.
-    #[error(transparent)]
-    Run(Box<RunError>),
-}
-
-impl From<RunError> for PrecisionError {
-    fn from(error: RunError) -> PrecisionError {
-        PrecisionError::Run(Box::new(error))
-    }
-}
-
-impl From<SceneError> for PrecisionError {
-    fn from(error: SceneError) -> PrecisionError {
-        RunError::from(error).into()
-    }
-}
-
 /// A chart whose runs are all planned.
 pub struct PlannedChart {
     /// The chart as requested.
@@ -102,7 +76,7 @@ impl PlannedChart {
     /// Plans the runs of a chart.
     ///
     /// # Errors If a path or a value is invalid, or the reference table cannot be read.
-    pub fn new(chart: Chart) -> Result<PlannedChart, PrecisionError> {
+    pub fn new(chart: Chart) -> Result<PlannedChart, RunError> {
         let lay_out = |vary: &[Vary], set: &[(String, String)]| {
             Plan::new(Study {
                 vary: vary.to_vec(),
@@ -215,14 +189,14 @@ pub fn sweep(charts: &[PlannedChart], repeats: usize) -> Sweep<'_, TimedRun> {
 }
 
 /// The reference table of a chart, if its reference is one.
-fn table(chart: &Chart, path: &[f64]) -> Result<Option<Reference>, PrecisionError> {
+fn table(chart: &Chart, path: &[f64]) -> Result<Option<Reference>, RunError> {
     match &chart.truth {
         Truth::Table(file) => Ok(Some(Reference::open(file, path)?)),
         Truth::Builtin => {
             let name = chart.scene.strip_suffix(".ron").unwrap_or(&chart.scene);
-            let table = Reference::builtin(name, path)
-                .ok_or_else(|| format!("there is no built-in reference for {name}"));
-            Ok(Some(table.map_err(PrecisionError::Reference)??))
+            let none =
+                || RunError::Incomparable(format!("there is no built-in reference for {name}"));
+            Ok(Some(Reference::builtin(name, path).ok_or_else(none)??))
         }
         Truth::Run(_) | Truth::Finest | Truth::Richardson => Ok(None),
     }

@@ -12,43 +12,10 @@
 
 use super::plan::Plan;
 use super::result::{CaseEnd, Run};
+use super::run_error::error_at;
 use std::fmt::Write;
-use std::path::Path;
-use stickslip_platform::input::{MARK, Unreadable};
-use stickslip_scene::{joined, shown};
-
-/// Why a table cannot be read, with the location.
-#[derive(Debug, thiserror::Error)]
-pub enum TableError {
-    /// The file cannot be read.
-    #[error("{}", why.of(file))]
-    Unreadable {
-        /// Name of the file.
-        file: String,
-        /// Cause.
-        why: Unreadable,
-    },
-    /// The table is invalid.
-    #[error("{file}:{line}:{column}: {message}")]
-    Wrong {
-        /// Name of the file.
-        file: String,
-        /// Line, from 1.
-        line: usize,
-        /// Column, from 1, in characters.
-        column: usize,
-        /// What is wrong.
-        message: String,
-    },
-}
-
-impl TableError {
-    /// The error for a file that cannot be read.
-    pub(super) fn unreadable(file: &Path, why: Unreadable) -> TableError {
-        let file = file.display().to_string();
-        TableError::Unreadable { file, why }
-    }
-}
+use stickslip_platform::input::MARK;
+use stickslip_scene::{SceneError, joined, shown};
 
 /// The table, header first.
 pub fn table(plan: &Plan, runs: &[Run]) -> String {
@@ -161,14 +128,9 @@ impl<'a> Table<'a> {
     ///
     /// # Errors
     /// If there is no header.
-    pub(super) fn read(file: &'a str, text: &'a str) -> Result<Table<'a>, TableError> {
+    pub(super) fn read(file: &'a str, text: &'a str) -> Result<Table<'a>, SceneError> {
         let text = text.strip_prefix(MARK).unwrap_or(text);
-        let wrong = |message: String| TableError::Wrong {
-            file: file.to_owned(),
-            line: 1,
-            column: 1,
-            message,
-        };
+        let wrong = |message: String| error_at(file, (1, 1), message);
         let mut reader = csv::ReaderBuilder::new();
         reader.has_headers(false).flexible(true);
         reader.trim(csv::Trim::All).comment(Some(b'#'));
@@ -213,7 +175,7 @@ impl<'a> Table<'a> {
     }
 
     /// Rejects a row whose number of fields differs from the header's.
-    pub(super) fn check(&self, row: &CsvRow) -> Result<(), TableError> {
+    pub(super) fn check(&self, row: &CsvRow) -> Result<(), SceneError> {
         let (has, wants) = (row.fields.len(), self.header.fields.len());
         if has == wants {
             return Ok(());
@@ -223,18 +185,14 @@ impl<'a> Table<'a> {
     }
 
     /// An error about the header, or about the whole table.
-    pub(super) fn wrong_header(&self, message: String) -> TableError {
+    pub(super) fn wrong_header(&self, message: String) -> SceneError {
         self.wrong(&self.header, 0, message)
     }
 
     /// An error at a field (from 0) of a row.
-    pub(super) fn wrong(&self, row: &CsvRow, field: usize, message: String) -> TableError {
-        TableError::Wrong {
-            file: self.file.to_owned(),
-            line: 1 + self.text[..row.start].matches('\n').count(),
-            column: column(self.line(row), field),
-            message,
-        }
+    pub(super) fn wrong(&self, row: &CsvRow, field: usize, message: String) -> SceneError {
+        let line = 1 + self.text[..row.start].matches('\n').count();
+        error_at(self.file, (line, column(self.line(row), field)), message)
     }
 
     fn line(&self, row: &CsvRow) -> &'a str {

@@ -66,6 +66,7 @@ pub mod reference;
 pub mod result;
 pub mod richardson;
 pub mod run;
+pub mod run_error;
 pub mod shard;
 pub mod sheet;
 pub mod solver_pool;

@@ -10,6 +10,7 @@
 //! versions wrote no digests: such lines are read, but not after a line with a digest.
 
 use super::origin;
+use super::run_error::{RunError, error_at};
 use super::shard::Key;
 use super::sweep_input::Input;
 use serde::Serialize;
@@ -21,116 +22,10 @@ use std::sync::Mutex;
 use stickslip_exchange::seal::{Seal, opened as unsealed, sealed};
 use stickslip_platform::disk::{File, OpenOptions};
 use stickslip_platform::input::{self, Unreadable};
-use stickslip_scene::FileKind;
 use stickslip_scene::format::notation;
-use stickslip_scene::format::read::plainly;
+use stickslip_scene::format::read::{not_read, plainly};
 use stickslip_scene::readers::mistaken;
-
-/// Why results cannot be stored or read.
-#[derive(Debug, thiserror::Error)]
-pub enum LogError {
-    /// The system reports an error.
-    #[error("{}: {source}", path.display())]
-    File {
-        /// Path of the file.
-        path: PathBuf,
-        /// Cause.
-        source: io::Error,
-    },
-    /// The file cannot be read.
-    #[error("{}", why.of(&path.display().to_string()))]
-    Unread {
-        /// Path of the file.
-        path: PathBuf,
-        /// Cause.
-        why: Unreadable,
-    },
-    /// Another run is using the file.
-    #[error("{}: another run is writing to this file", .0.display())]
-    Busy(PathBuf),
-    /// The file is something else.
-    #[error("{}:1:1: {}; the file has not been changed", path.display(), wrong_kind.clone().unwrap_or_else(|| format!("not a log of results (it would begin with {ours:?})")))]
-    Foreign {
-        /// Path of the file.
-        path: PathBuf,
-        /// Beginning of a log.
-        ours: String,
-        /// If the program knows the kind of file: what it is, and what reads it.
-        wrong_kind: Option<String>,
-    },
-    /// Another revision of the program wrote the file; its results may differ in their last bits.
-    #[error("{}:1:1: written by another revision of the program, whose results may differ: {theirs:?} instead of {ours:?}", path.display())]
-    Revision {
-        /// Path of the file.
-        path: PathBuf,
-        /// Its first line.
-        theirs: String,
-        /// Our first line.
-        ours: String,
-    },
-    /// The results belong to something else.
-    #[error("{}: {why}", path.display())]
-    Other {
-        /// Path of the file.
-        path: PathBuf,
-        /// The difference.
-        why: String,
-    },
-    /// Two results of one cell differ.
-    #[error(transparent)]
-    Disagree(#[from] Box<Disagreement>),
-    /// The result cannot be stored.
-    #[error("{}: a result has a number that is not finite, so it cannot be stored", .0.display())]
-    Unsound(PathBuf),
-    /// A line cannot be read.
-    #[error("{}:{line}:{column}: this result cannot be read: {message}", path.display())]
-    Broken {
-        /// Path of the file.
-        path: PathBuf,
-        /// Line, from 1.
-        line: usize,
-        /// Column, from 1, in characters.
-        column: usize,
-        /// What is wrong.
-        message: String,
-    },
-}
-
-impl LogError {
-    /// Converts a system error about a file.
-    fn file(path: &Path) -> impl Fn(io::Error) -> LogError + Copy + '_ {
-        move |source| LogError::File {
-            path: path.to_owned(),
-            source,
-        }
-    }
-
-    /// An error at the beginning of a line.
-    pub fn broken(path: &Path, line: usize, message: impl Into<String>) -> LogError {
-        LogError::Broken {
-            path: path.to_owned(),
-            line,
-            column: 1,
-            message: message.into(),
-        }
-    }
-}
-
-/// Two results of one cell that differ.
-#[derive(Debug, thiserror::Error)]
-#[error(
-    "{cell} has two results that differ: {}:{} and {}:{}; one of them was computed by another program or on another kind of \
-     machine",
-    first.0.display(), first.1, second.0.display(), second.1
-)]
-pub struct Disagreement {
-    /// Name of the cell.
-    pub cell: String,
-    /// File and line of the first result.
-    pub first: (PathBuf, usize),
-    /// File and line of the second result.
-    pub second: (PathBuf, usize),
-}
+use stickslip_scene::{FileKind, SceneError};
 
 /// Maximum size of a log in bytes.
 const MOST_BYTES: u64 = 2 << 30;
@@ -214,13 +109,9 @@ struct Lines<'a> {
 
 impl Lines<'_> {
     /// Reads the first line; `false` if it is missing or incomplete.
-    fn head(&mut self) -> Result<bool, LogError> {
+    fn head(&mut self) -> Result<bool, RunError> {
         let path = self.path;
-        let foreign = || LogError::Foreign {
-            path: path.to_owned(),
-            ours: head(),
-            wrong_kind: wrong_kind(path),
-        };
+        let wrong = |message: String| Err(error_at(path, (1, 1), message).into());
         /// Maximum length of the first line in any revision, in bytes.
         const MOST_HEAD: usize = 256;
         let bytes = self.bytes(MOST_HEAD)?;
@@ -237,23 +128,28 @@ impl Lines<'_> {
                 if FileKind::from_text(&String::from_utf8_lossy(line))
                     == Some(FileKind::Results) =>
             {
-                Err(LogError::Revision {
-                    path: path.to_owned(),
-                    theirs: String::from_utf8_lossy(line).into_owned(),
-                    ours: head(),
-                })
+                let theirs = String::from_utf8_lossy(line);
+                wrong(format!(
+                    "written by another revision of the program, whose results may differ: {theirs:?} instead of {:?}",
+                    head()
+                ))
             }
-            _ => Err(foreign()),
+            _ => {
+                let found = wrong_kind(path).unwrap_or_else(|| {
+                    format!("not a log of results (it would begin with {:?})", head())
+                });
+                wrong(format!("{found}; the file has not been changed"))
+            }
         }
     }
 
     /// The next complete line, without its end.
-    fn next(&mut self) -> Result<Option<String>, LogError> {
+    fn next(&mut self) -> Result<Option<String>, RunError> {
         if self.number == 0 {
             return Ok(None);
         }
         let mut bytes = self.bytes(self.most)?;
-        let broken = |message: &str| LogError::broken(self.path, self.number + 1, message);
+        let broken = |message: &str| broken(self.path, (self.number + 1, 1), message);
         let length = bytes.len();
         if bytes.pop_if(|last| *last == b'\n').is_none() {
             return if length < self.most {
@@ -280,12 +176,12 @@ impl Lines<'_> {
     }
 
     /// The bytes up to and including the end of a line, or `most` bytes.
-    fn bytes(&mut self, most: usize) -> Result<Vec<u8>, LogError> {
+    fn bytes(&mut self, most: usize) -> Result<Vec<u8>, RunError> {
         let mut bytes = Vec::new();
         let read = (&mut self.from)
             .take(most as u64)
             .read_until(b'\n', &mut bytes);
-        read.map(|_| bytes).map_err(LogError::file(self.path))
+        read.map(|_| bytes).map_err(RunError::system(self.path))
     }
 }
 
@@ -336,19 +232,13 @@ fn content<T: Outcome>(
     file: &File,
     path: &Path,
     ours: &Input,
-) -> Result<(Content<T>, u64), LogError> {
-    let failed = LogError::file(path);
+) -> Result<(Content<T>, u64), RunError> {
+    let failed = RunError::system(path);
     let size = file.metadata().map_err(failed)?.len();
     if size > MOST_BYTES {
         let what = "too large for a log of results";
-        let why = Unreadable::TooLarge {
-            most: MOST_BYTES,
-            what,
-        };
-        return Err(LogError::Unread {
-            path: path.to_owned(),
-            why,
-        });
+        let most = MOST_BYTES;
+        return Err(unread(path, &Unreadable::TooLarge { most, what }));
     }
     let mut lines = Lines {
         from: BufReader::new(file),
@@ -364,22 +254,17 @@ fn content<T: Outcome>(
     };
     lines.head()?;
     while let Some(line) = lines.next()? {
-        let read = entry::<T>(&line).map_err(|(column, message)| LogError::Broken {
-            path: path.to_owned(),
-            line: lines.number,
-            column,
-            message,
-        })?;
+        let read = entry::<T>(&line)
+            .map_err(|(column, message)| broken(path, (lines.number, column), &message))?;
         match read {
             Entry::Input(input) => {
                 if let Some(why) = ours.difference(&input) {
-                    let path = path.to_owned();
-                    return Err(LogError::Other { path, why });
+                    return Err(SceneError::whole(&path.display().to_string(), why).into());
                 }
                 content.inputs.push(input);
             }
             Entry::Result(_, value) if !value.is_sound() => {
-                return Err(LogError::broken(path, lines.number, UNSOUND));
+                return Err(broken(path, (lines.number, 1), UNSOUND));
             }
             Entry::Result(key, value) => {
                 let line = lines.number;
@@ -391,17 +276,23 @@ fn content<T: Outcome>(
 }
 
 /// Opens a file with these options.
-fn opened(path: &Path, options: &mut OpenOptions) -> Result<File, LogError> {
-    input::open(path, options).map_err(|why| LogError::Unread {
-        path: path.to_owned(),
-        why,
-    })
+fn opened(path: &Path, options: &mut OpenOptions) -> Result<File, RunError> {
+    input::open(path, options).map_err(|why| unread(path, &why))
+}
+
+fn unread(path: &Path, why: &Unreadable) -> RunError {
+    not_read(&path.display().to_string(), why).into()
+}
+
+/// An invalid result.
+pub(super) fn broken(path: &Path, at: (usize, usize), message: &str) -> RunError {
+    error_at(path, at, format!("this result cannot be read: {message}")).into()
 }
 
 /// Reads a log without changing it; another process may be writing to it.
 ///
 /// # Errors If it cannot be read, or belongs to something else.
-pub fn read<T: Outcome>(path: &Path, ours: &Input) -> Result<Content<T>, LogError> {
+pub fn read<T: Outcome>(path: &Path, ours: &Input) -> Result<Content<T>, RunError> {
     let file = opened(path, File::options().read(true))?;
     Ok(content(&file, path, ours)?.0)
 }
@@ -410,13 +301,16 @@ impl Log {
     /// Opens or creates a log, and reads its contents.
     ///
     /// # Errors If it cannot be read or written, is something else, or is open in another run.
-    pub fn open<T: Outcome>(path: &Path, ours: &Input) -> Result<(Log, Content<T>), LogError> {
-        let failed = LogError::file(path);
+    pub fn open<T: Outcome>(path: &Path, ours: &Input) -> Result<(Log, Content<T>), RunError> {
+        let failed = RunError::system(path);
         let mut options = File::options();
         options.read(true).write(true).create(true).truncate(false);
         let mut file = opened(path, &mut options)?;
         if matches!(file.try_lock(), Err(TryLockError::WouldBlock)) {
-            return Err(LogError::Busy(path.to_owned()));
+            let path = path.display();
+            return Err(RunError::Again(format!(
+                "{path}: another run is writing to this file"
+            )));
         }
         let (found, whole) = content(&file, path, ours)?;
         file.set_len(whole).map_err(failed)?;
@@ -439,11 +333,12 @@ impl Log {
     /// Appends a result, in one write.
     ///
     /// # Errors If it cannot be written, or could not be read back.
-    pub fn keep<T: Outcome>(&self, key: Key, value: &T) -> Result<(), LogError> {
+    pub fn keep<T: Outcome>(&self, key: Key, value: &T) -> Result<(), RunError> {
         if value.is_sound() {
             self.write(&key.to_string(), value)
         } else {
-            Err(LogError::Unsound(self.path.clone()))
+            let why = "a result has a number that is not finite, so it cannot be stored";
+            Err(SceneError::whole(&self.path.display().to_string(), why).into())
         }
     }
 
@@ -451,12 +346,12 @@ impl Log {
     ///
     /// # Errors
     /// If it cannot be written.
-    pub fn name(&self, input: &Input) -> Result<(), LogError> {
+    pub fn name(&self, input: &Input) -> Result<(), RunError> {
         self.write(INPUT, input)
     }
 
-    fn write<T: Serialize>(&self, key: &str, value: &T) -> Result<(), LogError> {
-        let failed = LogError::file(&self.path);
+    fn write<T: Serialize>(&self, key: &str, value: &T) -> Result<(), RunError> {
+        let failed = RunError::system(&self.path);
         let value = notation::strict_line(value).map_err(|e| failed(io::Error::other(e)))?;
         let line = sealed(&format!("{key}\t{value}")) + "\n";
         let mut file = self
@@ -479,14 +374,17 @@ mod tests {
         }
     }
 
-    fn open(path: &Path) -> Result<(Log, Content<Vec<f64>>), LogError> {
+    fn open(path: &Path) -> Result<(Log, Content<Vec<f64>>), RunError> {
         Log::open(path, &Input::new("test", Vec::new()))
     }
 
     /// The error for a file of results, and its line.
     fn refused(path: &Path) -> (usize, String) {
         match open(path) {
-            Err(LogError::Broken { line, message, .. }) => (line, message),
+            Err(RunError::File(error)) => {
+                let message = error.message.strip_prefix("this result cannot be read: ");
+                (error.at.unwrap().0, message.unwrap().to_owned())
+            }
             other => panic!("{other:?}"),
         }
     }
@@ -555,7 +453,7 @@ mod tests {
         log.keep(Key::from_parts(["a"]), &vec![0.1, f64::INFINITY])
             .unwrap();
         log.keep(Key::from_parts(["b"]), &vec![1e-300]).unwrap();
-        assert!(matches!(open(&path), Err(LogError::Busy(_))));
+        assert!(matches!(open(&path), Err(RunError::Again(_))));
         drop(log);
         let whole = std::fs::read(&path).unwrap();
         for cut in 0..whole.len() {
@@ -580,8 +478,13 @@ mod tests {
         let path = directory.path().join("a.csv");
         for text in ["a,b\n1,2\n", "a,b"] {
             std::fs::write(&path, text).unwrap();
-            let refused = open(&path);
-            assert!(matches!(refused, Err(LogError::Foreign { .. })), "{text}");
+            let refused = open(&path).unwrap_err().to_string();
+            let start = format!("{}:1:1: ", path.display());
+            let end = "; the file has not been changed";
+            assert!(
+                refused.starts_with(&start) && refused.ends_with(end),
+                "{refused}"
+            );
             assert_eq!(std::fs::read_to_string(&path).unwrap(), text);
         }
     }

@@ -1,8 +1,9 @@
 //! Measures a work-precision chart on a separate thread.
 
 use super::chart_file::Chart;
-use super::chart_runs::{PlannedChart, PrecisionError, sweep};
+use super::chart_runs::{PlannedChart, sweep};
 use super::precision::{self, Cost, Measure, Precision};
+use super::run_error::RunError;
 use super::{Vary, Watch};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -10,23 +11,12 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use stickslip_platform::task;
 use stickslip_scene::Scene;
 
-/// Why there is no chart.
-#[derive(Debug, thiserror::Error)]
-pub enum NotMeasured {
-    /// The chart could not be measured.
-    #[error(transparent)]
-    Failed(#[from] PrecisionError),
-    /// The thread ended without a result.
-    #[error("the measurement ended unexpectedly")]
-    BrokeDown,
-}
-
 /// A chart being measured; dropping it interrupts the measurement.
 pub struct ChartMeasurement {
     stop: Arc<AtomicBool>,
     done: Arc<AtomicU64>,
     all: Arc<AtomicU64>,
-    result: Receiver<Result<Precision, NotMeasured>>,
+    result: Receiver<Result<Precision, RunError>>,
 }
 
 impl ChartMeasurement {
@@ -58,7 +48,7 @@ impl ChartMeasurement {
                 target: None,
                 repeats: 1,
             };
-            let chart = Chart::open(&name, &over).map_err(PrecisionError::from);
+            let chart = Chart::open(&name, &over).map_err(RunError::from);
             let planned = chart.and_then(|mut chart| {
                 chart.set.extend(set);
                 PlannedChart::new(chart)
@@ -69,7 +59,7 @@ impl ChartMeasurement {
                 precision::run(&planned, measure, &watch)
             });
             // The receiver may be gone.
-            let _ = sender.send(measured.map_err(NotMeasured::from));
+            let _ = sender.send(measured);
         });
         measuring
     }
@@ -86,11 +76,14 @@ impl ChartMeasurement {
     }
 
     /// The chart, or why there is none, once the measurement has ended.
-    pub fn result(&self) -> Option<Result<Precision, NotMeasured>> {
+    pub fn result(&self) -> Option<Result<Precision, RunError>> {
         match self.result.try_recv() {
             Ok(result) => Some(result),
             Err(TryRecvError::Empty) => None,
-            Err(TryRecvError::Disconnected) => Some(Err(NotMeasured::BrokeDown)),
+            Err(TryRecvError::Disconnected) => {
+                let why = "the measurement ended unexpectedly";
+                Some(Err(RunError::Incomparable(why.to_owned())))
+            }
         }
     }
 }

@@ -9,15 +9,15 @@
 //! both error and cost; differences below 2 % are ties, and errors at round-off ([`ROUND_OFF`]) count as equal.
 
 use super::chart_file::{Chart, Truth};
-use super::chart_runs::{PlannedChart, PrecisionError, TimedRun, sweep};
+use super::chart_runs::{PlannedChart, TimedRun, sweep};
 use super::figure::{assigned, name};
 use super::monitor_kind::{MonitorKind, kind};
 use super::origin;
 use super::reference::{Reference, ReferencePoint};
 use super::result::Run;
 use super::richardson;
+use super::run_error::RunError;
 use super::solver_pool::Watch;
-use super::sweep::RunError;
 use std::collections::HashMap;
 use std::num::NonZeroUsize;
 use stickslip_core::{Model, counted};
@@ -160,11 +160,7 @@ struct MeasuredRun {
 /// Runs all cases of a chart, one at a time.
 ///
 /// # Errors As [`Precision::new`], and if a scene cannot be opened.
-pub fn run(
-    planned: &PlannedChart,
-    measure: Measure,
-    watch: &Watch,
-) -> Result<Precision, PrecisionError> {
+pub fn run(planned: &PlannedChart, measure: Measure, watch: &Watch) -> Result<Precision, RunError> {
     let sweep = sweep(std::slice::from_ref(planned), measure.repeats);
     let results = sweep.run(NonZeroUsize::MIN, watch)?;
     Precision::new(planned, results, measure)
@@ -224,10 +220,10 @@ fn truth(
     planned: &PlannedChart,
     all: &[MeasuredRun],
     run: Option<TimedRun>,
-) -> Result<(Reference, Option<usize>), PrecisionError> {
+) -> Result<(Reference, Option<usize>), RunError> {
     let chart = &planned.chart;
     let path = all.first().map_or(&[][..], |m| m.path.as_slice());
-    let wrong = PrecisionError::Reference;
+    let wrong = RunError::Incomparable;
     match (&chart.truth, &planned.table) {
         (Truth::Table(_) | Truth::Builtin, table) => {
             let none = || wrong("the reference table was not read".to_owned());
@@ -312,7 +308,7 @@ fn compare(
     all: &mut [MeasuredRun],
     reference: &Reference,
     planned: &PlannedChart,
-) -> Result<usize, PrecisionError> {
+) -> Result<usize, RunError> {
     let Some(first) = all.first() else {
         return Ok(0);
     };
@@ -331,7 +327,7 @@ fn compare(
     };
     precision.monitors = reference.monitors.iter().filter(counts).cloned().collect();
     if precision.monitors.is_empty() {
-        return Err(PrecisionError::Reference(format!(
+        return Err(RunError::Incomparable(format!(
             "{} has none of the scene's monitors ({names})",
             reference.source
         )));
@@ -344,7 +340,7 @@ fn compare(
     let fixed = |row: &&ReferencePoint| planned.counts(&first.path, row.leg, row.load);
     let rows: Vec<_> = reference.rows.iter().filter(fixed).collect();
     if rows.is_empty() {
-        return Err(PrecisionError::Reference(format!(
+        return Err(RunError::Incomparable(format!(
             "{} has none of the fixed loads at which errors are measured",
             reference.source
         )));
@@ -416,11 +412,11 @@ fn compare(
 }
 
 /// Rejects monitors requested by name that the reference does not have, or that are always zero.
-fn measurable(reference: &Reference, by: &[String]) -> Result<(), PrecisionError> {
+fn measurable(reference: &Reference, by: &[String]) -> Result<(), RunError> {
     for name in by {
         let place = reference.monitors.iter().position(|own| own == name);
         let Some(place) = place else {
-            return Err(PrecisionError::Reference(format!(
+            return Err(RunError::Incomparable(format!(
                 "{} has no monitor {name}; it has {} (with --reference finest, a run with all monitors of the scene is the reference)",
                 reference.source,
                 reference.monitors.join(", ")
@@ -428,7 +424,7 @@ fn measurable(reference: &Reference, by: &[String]) -> Result<(), PrecisionError
         };
         let values = reference.rows.iter().map(|row| row.values[place].abs());
         if values.fold(0.0, f64::max) == 0.0 {
-            return Err(PrecisionError::Reference(format!(
+            return Err(RunError::Incomparable(format!(
                 "{name} is always zero in the reference, so it has no relative error"
             )));
         }
@@ -461,7 +457,7 @@ impl Precision {
         planned: &PlannedChart,
         results: Vec<Option<TimedRun>>,
         measure: Measure,
-    ) -> Result<Precision, PrecisionError> {
+    ) -> Result<Precision, RunError> {
         let (chart, plans) = (&planned.chart, &planned.plans);
         let mut results = results.into_iter();
         let mut all: Vec<MeasuredRun> = Vec::new();
@@ -473,7 +469,7 @@ impl Precision {
                 let own = plan.columns.iter().cloned();
                 let own = own.zip(case.values.iter().cloned()).collect();
                 let settings = [chart.series[s].set.clone(), own].concat();
-                let model = case.model().map_err(RunError::from)?;
+                let model = case.model()?;
                 all.push(measured(timed, &model, s, name(plan, k), settings));
             }
         }

@@ -1,13 +1,14 @@
 //! Writes and reads work-precision charts as tables.
 
-use super::csv::{Table, TableError};
+use super::csv::Table;
 use super::figure::assigned;
 use super::precision::{Cost, Point, Precision, mark_front};
 use std::fmt::Write;
 use std::path::Path;
 use stickslip_platform::input::{self, TABLE_BYTES};
 use stickslip_scene::format::error::quoted;
-use stickslip_scene::{joined, shown};
+use stickslip_scene::format::read::not_read;
+use stickslip_scene::{SceneError, joined, shown};
 
 /// Maximum length of a name in a table, in characters.
 const MOST_NAME: usize = 200;
@@ -20,9 +21,9 @@ const MOST_RUNS: usize = 20_000;
 ///
 /// # Errors
 /// If the file cannot be read.
-pub fn open(file: &Path) -> Result<String, TableError> {
+pub fn open(file: &Path) -> Result<String, SceneError> {
     input::text(file, TABLE_BYTES, "too large for the table of a chart")
-        .map_err(|why| TableError::unreadable(file, why))
+        .map_err(|why| not_read(&file.display().to_string(), &why))
 }
 
 /// Parses charts from a table as written by [`csv`](fn@csv). Only the columns `scene`, `series`, `run`,
@@ -34,7 +35,7 @@ pub fn read(
     text: &str,
     cost: Cost,
     target: Option<f64>,
-) -> Result<Vec<Precision>, TableError> {
+) -> Result<Vec<Precision>, SceneError> {
     let table = Table::read(name, text)?;
     let about: Vec<String> = table
         .comments()

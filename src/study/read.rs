@@ -57,31 +57,17 @@ pub struct Vary {
     pub values: Vec<String>,
 }
 
-/// Why a text cannot be parsed as a varied setting.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum NoVary {
-    /// The list of values is missing.
-    #[error("expected PATH=A,B,C, such as history.increment=0.01,0.02")]
-    NoValues,
-    /// The text after `=` is not a valid range.
-    #[error("{0}: expected a range LOW..HIGH/COUNT or LOW..HIGH/COUNTlog, such as 0.01..0.1/4")]
-    NoRange(String),
-    /// A logarithmic range with an end at or below 0.
-    #[error("{0}: the ends of a logarithmic range must be above 0")]
-    NoRatios(String),
-}
-
 impl Vary {
     /// Parses a varied setting: `PATH=A,B,C`. A value may be a range: `0.01..0.1/4` means four evenly
     /// spaced values, including the ends, `0.01..0.1/4log` for four in constant ratio. `2x` is twice the
     /// scene's value (computed by the plan).
     ///
     /// # Errors If the text does not have this form.
-    pub fn parse(text: &str) -> Result<Vary, NoVary> {
+    pub fn parse(text: &str) -> Result<Vary, String> {
         let Some((path, values)) = text.split_once('=') else {
-            return Err(NoVary::NoValues);
+            return Err("expected PATH=A,B,C, such as history.increment=0.01,0.02".to_owned());
         };
-        let values: Result<Vec<Vec<String>>, NoVary> = values
+        let values: Result<Vec<Vec<String>>, String> = values
             .split(',')
             .map(|value| spread(value.trim()))
             .collect();
@@ -93,11 +79,15 @@ impl Vary {
 }
 
 /// A value, or the values of a range.
-fn spread(value: &str) -> Result<Vec<String>, NoVary> {
+fn spread(value: &str) -> Result<Vec<String>, String> {
     let Some((low, rest)) = value.split_once("..") else {
         return Ok(vec![value.to_owned()]);
     };
-    let wrong = || NoVary::NoRange(value.to_owned());
+    let wrong = || {
+        format!(
+            "{value}: expected a range LOW..HIGH/COUNT or LOW..HIGH/COUNTlog, such as 0.01..0.1/4"
+        )
+    };
     let (high, count) = rest.split_once('/').ok_or_else(wrong)?;
     let (count, even_ratios) = match count.strip_suffix("log") {
         Some(count) => (count, true),
@@ -111,7 +101,9 @@ fn spread(value: &str) -> Result<Vec<String>, NoVary> {
         .filter(|n| (2..=1000).contains(n))
         .ok_or_else(wrong)?;
     if even_ratios && !(low > 0.0 && high > 0.0) {
-        return Err(NoVary::NoRatios(value.to_owned()));
+        return Err(format!(
+            "{value}: the ends of a logarithmic range must be above 0"
+        ));
     }
     let at = |k: u32| {
         let part = f64::from(k) / f64::from(count - 1);

@@ -4,14 +4,15 @@
 //! columns are ignored) and, if the load path reverses, `leg` (from 1; without it, a new leg starts after the
 //! load of each corner). The output of `stickslip run --csv` is such a table.
 
-use super::csv::{Table, TableError};
+use super::csv::Table;
 use super::result::Run;
 use std::path::Path;
 use stickslip_core::plane::max_abs;
 use stickslip_platform::input::{self, TABLE_BYTES};
-use stickslip_scene::EmbeddedFile;
 use stickslip_scene::embedded_all;
 use stickslip_scene::format::error::{quoted, shortened};
+use stickslip_scene::format::read::not_read;
+use stickslip_scene::{EmbeddedFile, SceneError};
 
 /// Relative difference below which loads are equal.
 pub const SAME_LOAD: f64 = 1e-9;
@@ -56,7 +57,7 @@ impl Reference {
     /// The built-in reference for a scene; `path` is the scene's load path.
     ///
     /// # Errors Never for the built-in tables (checked by tests).
-    pub fn builtin(scene: &str, path: &[f64]) -> Option<Result<Reference, TableError>> {
+    pub fn builtin(scene: &str, path: &[f64]) -> Option<Result<Reference, SceneError>> {
         let table = TABLES.iter().find(|table| table.name == scene)?;
         Some(Reference::read(
             &format!("{}.csv", table.name),
@@ -68,10 +69,10 @@ impl Reference {
     /// Reads a table from a file.
     ///
     /// # Errors If it cannot be read; the message has file, line and column.
-    pub fn open(file: &Path, path: &[f64]) -> Result<Reference, TableError> {
+    pub fn open(file: &Path, path: &[f64]) -> Result<Reference, SceneError> {
         let name = file.display().to_string();
         let text = input::text(file, TABLE_BYTES, "too large for a reference table")
-            .map_err(|why| TableError::unreadable(file, why))?;
+            .map_err(|why| not_read(&name, &why))?;
         Reference::read(&name, &text, path)
     }
 
@@ -79,7 +80,7 @@ impl Reference {
     ///
     /// # Errors
     /// As [`Reference::open`].
-    pub fn read(name: &str, text: &str, path: &[f64]) -> Result<Reference, TableError> {
+    pub fn read(name: &str, text: &str, path: &[f64]) -> Result<Reference, SceneError> {
         let table = Table::read(name, text)?;
         let about: Vec<&str> = table.comments().collect();
         let heads = table.heads();

@@ -3,8 +3,9 @@
 use super::figure::name;
 use super::plan::Plan;
 use super::result::Run;
+use super::run_error::RunError;
 use super::solver_pool::{SolverPool, Watch, one};
-use super::sweep::{RunError, Sweep};
+use super::sweep::Sweep;
 use super::sweep_input::Input;
 use std::num::NonZeroUsize;
 use std::sync::Arc;

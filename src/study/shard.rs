@@ -100,18 +100,16 @@ impl Shard {
     }
 }
 
-/// A text that is not a shard.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[error("expected K/N, such as 3/40 for shard 3 of 40 (K from 1 to N)")]
-pub struct NoShard;
+/// The error for text that is no shard.
+const NO_SHARD: &str = "expected K/N, such as 3/40 for shard 3 of 40 (K from 1 to N)";
 
 impl FromStr for Shard {
-    type Err = NoShard;
+    type Err = &'static str;
 
-    fn from_str(text: &str) -> Result<Shard, NoShard> {
-        let (number, of) = text.split_once('/').ok_or(NoShard)?;
-        let whole = |text: &str| text.parse::<u64>().map_err(|_| NoShard);
-        Shard::new(whole(number)?, whole(of)?).ok_or(NoShard)
+    fn from_str(text: &str) -> Result<Shard, Self::Err> {
+        let (number, of) = text.split_once('/').ok_or(NO_SHARD)?;
+        let whole = |text: &str| text.parse::<u64>().map_err(|_| NO_SHARD);
+        Shard::new(whole(number)?, whole(of)?).ok_or(NO_SHARD)
     }
 }
 
@@ -193,7 +191,7 @@ mod tests {
     fn a_shard_is_k_of_n() {
         assert_eq!("3/40".parse(), Ok(Shard::new(3, 40).unwrap()));
         for wrong in ["", "3", "0/4", "5/4", "1/0", "a/4", "1/2/3", "-1/4"] {
-            assert_eq!(wrong.parse::<Shard>(), Err(NoShard), "{wrong}");
+            assert_eq!(wrong.parse::<Shard>(), Err(NO_SHARD), "{wrong}");
         }
         assert!(Shard::WHOLE.has(Key::from_parts(["a"]).mixed()));
     }

@@ -4,7 +4,8 @@
 //! log or from the logs of all shards. The merged result depends neither on the order of the files nor on how
 //! often a cell occurs in them.
 
-use super::log::{self, Disagreement, Log, LogError, Outcome, StoredResult};
+use super::log::{self, Log, Outcome, StoredResult};
+use super::run_error::RunError;
 use super::shard::{Key, Shard};
 use super::solver_pool::{SolverPool, Watch};
 use super::sweep_input::Input;
@@ -12,24 +13,9 @@ use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::num::{NonZeroU64, NonZeroUsize};
 use std::path::{Path, PathBuf};
-use stickslip_scene::SceneError;
 
 /// Scenes are parsed recursively; the stack of a main thread is sufficient for all valid ones.
 const STACK: usize = 8 << 20;
-
-/// Why a sweep cannot be run.
-#[derive(Debug, thiserror::Error)]
-pub enum RunError {
-    /// The threads cannot be started.
-    #[error("the threads cannot be started: {0}")]
-    Threads(#[from] rayon::ThreadPoolBuildError),
-    /// A scene is invalid.
-    #[error(transparent)]
-    Scene(#[from] SceneError),
-    /// The log cannot be read or written.
-    #[error(transparent)]
-    Log(#[from] LogError),
-}
 
 /// A cell of a sweep.
 #[derive(Debug, Clone, Copy)]
@@ -104,7 +90,8 @@ pub fn side_by_side<T: Send>(
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(jobs.get().min(count.max(1)))
         .stack_size(STACK)
-        .build()?;
+        .build()
+        .map_err(|why| RunError::Again(format!("the threads cannot be started: {why}")))?;
     // One by one, because cells differ in cost and the first ones should be done first.
     let all = (0..count).into_par_iter().with_max_len(1);
     pool.install(|| all.map(compute).collect())
@@ -160,7 +147,7 @@ impl<T: Outcome> Sweep<'_, T> {
         self.cells.iter().map(|cell| cell.steps).sum()
     }
 
-    fn check(&self, store: &Store<T>, found: &StoredResult<T>) -> Result<(), LogError> {
+    fn check(&self, store: &Store<T>, found: &StoredResult<T>) -> Result<(), RunError> {
         let (has, wants) = (found.value.runs(), self.runs);
         if has == wants {
             return Ok(());
@@ -170,7 +157,7 @@ impl<T: Outcome> Sweep<'_, T> {
             (None, first) => first.map_or(Path::new(""), |(path, _)| path),
         };
         let message = format!("the result has {has} trials, but its problem has {wants}");
-        Err(LogError::broken(path, found.line, message))
+        Err(log::broken(path, (found.line, 1), &message))
     }
 }
 
@@ -178,7 +165,7 @@ impl<T: Outcome> Store<T> {
     /// Opens the existing results.
     ///
     /// # Errors If a file cannot be read or written, belongs to another sweep, or contradicts another one.
-    pub fn open(keeping: &ResultStorage, sweep: &Sweep<'_, T>) -> Result<Store<T>, LogError> {
+    pub fn open(keeping: &ResultStorage, sweep: &Sweep<'_, T>) -> Result<Store<T>, RunError> {
         let mut store = Store {
             found: HashMap::new(),
             log: None,
@@ -206,7 +193,7 @@ impl<T: Outcome> Store<T> {
         Ok(store)
     }
 
-    fn merge(&mut self, paths: &[PathBuf], sweep: &Sweep<'_, T>) -> Result<(), LogError> {
+    fn merge(&mut self, paths: &[PathBuf], sweep: &Sweep<'_, T>) -> Result<(), RunError> {
         let numbers: HashMap<Key, usize> =
             sweep.cells.iter().map(|cell| cell.key).zip(0..).collect();
         let mut places: HashMap<Key, usize> = HashMap::new();
@@ -218,8 +205,8 @@ impl<T: Outcome> Store<T> {
                     if is_shared {
                         continue;
                     }
-                    let message = "none of its results belongs to this sweep".to_owned();
-                    return Err(LogError::broken(path, found.line, message));
+                    let message = "none of its results belongs to this sweep";
+                    return Err(log::broken(path, (found.line, 1), message));
                 };
                 let Some(before) = self.found.get_mut(&key) else {
                     places.insert(key, file);
@@ -228,11 +215,14 @@ impl<T: Outcome> Store<T> {
                 };
                 before.value = before.value.join(&found.value).ok_or_else(|| {
                     let first = places.get(&key).map_or(file, |first| *first);
-                    Box::new(Disagreement {
-                        cell: (sweep.name)(number),
-                        first: (paths[first].clone(), before.line),
-                        second: (path.clone(), found.line),
-                    })
+                    RunError::Incomparable(format!(
+                        "{} has two results that differ: {}:{} and {}:{}; one of them was computed by another program or on another kind of machine",
+                        (sweep.name)(number),
+                        paths[first].display(),
+                        before.line,
+                        path.display(),
+                        found.line
+                    ))
                 })?;
             }
             let machines = content

@@ -88,8 +88,7 @@ fn every_command_in_the_manual_can_be_typed() {
         for line in pages::typed(page.text()) {
             if let Some(words) = pages::arguments(&line) {
                 commands += 1;
-                pages::is_command_line(&words)
-                    .unwrap_or_else(|error| panic!("{line}: {error}"));
+                pages::is_command_line(&words).unwrap_or_else(|error| panic!("{line}: {error}"));
             }
             if let Some(action) = line.strip_prefix(':').filter(|rest| !rest.is_empty()) {
                 let name = action.split_whitespace().next().unwrap();

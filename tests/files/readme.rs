@@ -33,8 +33,7 @@ fn every_command_in_the_readme_can_be_typed() {
         .collect();
     assert!(commands.len() > 5);
     for words in commands {
-        pages::is_command_line(&words)
-            .unwrap_or_else(|error| panic!("{words:?}: {error}"));
+        pages::is_command_line(&words).unwrap_or_else(|error| panic!("{words:?}: {error}"));
     }
 }
 
