@@ -249,15 +249,10 @@ fn parameters(scene: &Scene) -> Vec<ParameterMessage> {
         ),
         number(COHESION, friction.cohesion, "Cohesion of all contacts"),
     ];
-    let words = paths::of_settings();
     let settings = paths::list(&scene.spec).into_iter();
     let settings = settings.filter(|listed| listed.path.starts_with("settings."));
     all.extend(settings.map(|listed| {
-        let choices: Vec<String> = words
-            .iter()
-            .find(|(path, _)| *path == listed.path)
-            .map(|(_, words)| words.iter().map(|word| (*word).to_owned()).collect())
-            .unwrap_or_default();
+        let choices: Vec<String> = listed.words.iter().map(|word| (*word).to_owned()).collect();
         let (kind, value) = match listed.value.parse::<f64>() {
             _ if !choices.is_empty() => (ParameterKind::Choice, Value::from(listed.value)),
             Ok(_) if listed.kind.contains("whole") => {

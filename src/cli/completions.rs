@@ -16,7 +16,7 @@ use stickslip_core::Strategy;
 use stickslip_debugger::teach;
 use stickslip_manual as manual;
 use stickslip_scene::builtin;
-use stickslip_scene::format::paths;
+use stickslip_scene::format::paths::{self, ListedScalar};
 use stickslip_scene::format::read;
 use stickslip_study::precision::Cost;
 use stickslip_study::{benchmarks, builtin as studies};
@@ -258,7 +258,7 @@ fn with_files(begun: &OsStr, all: Vec<Named>) -> Vec<CompletionCandidate> {
 /// Completes `PATH=`, then `PATH=VALUE`; in a comma-separated list, the last value.
 fn settings(begun: &OsStr) -> Vec<CompletionCandidate> {
     let words: Vec<OsString> = std::env::args_os().collect();
-    let listed = of_scene(&words).unwrap_or_else(of_any);
+    let listed = of_scene(&words).unwrap_or_else(|| paths::of_settings().collect());
     let begun = begun.to_string_lossy();
     let found: Vec<String> = match begun.split_once('=') {
         None => listed
@@ -279,15 +279,9 @@ fn settings(begun: &OsStr) -> Vec<CompletionCandidate> {
     found.into_iter().map(CompletionCandidate::new).collect()
 }
 
-/// A path that can be set, and its possible values if they are words.
-struct SettablePath {
-    path: String,
-    words: &'static [&'static str],
-}
-
 /// The paths of the scene among these words; `None` if there is no scene, or it is not readable.
-fn of_scene(words: &[OsString]) -> Option<Vec<SettablePath>> {
-    let listed = words.iter().skip(1).find_map(|word| {
+fn of_scene(words: &[OsString]) -> Option<Vec<ListedScalar>> {
+    words.iter().skip(1).find_map(|word| {
         let name = word.to_str()?;
         let text = match builtin::find(name) {
             Some(scene) => scene.text.to_owned(),
@@ -295,24 +289,7 @@ fn of_scene(words: &[OsString]) -> Option<Vec<SettablePath>> {
             None => return None,
         };
         Some(paths::list(&read::spec(name, &text).ok()?))
-    })?;
-    Some(
-        listed
-            .into_iter()
-            .map(|own| SettablePath {
-                path: own.path,
-                words: own.words,
-            })
-            .collect(),
-    )
-}
-
-/// The paths that all scenes have.
-fn of_any() -> Vec<SettablePath> {
-    paths::of_settings()
-        .into_iter()
-        .map(|(path, words)| SettablePath { path, words })
-        .collect()
+    })
 }
 
 #[cfg(test)]

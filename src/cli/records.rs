@@ -487,7 +487,7 @@ impl FailureRecord {
 
 /// Defines the kinds of failure, each with its word and what it means.
 macro_rules! failure_kinds {
-    ($($kind:ident $word:literal $meaning:literal,)*) => {
+    ($($kind:ident $word:literal $meaning:literal $($failure:pat)?,)*) => {
         stickslip_core::words! {
             /// Kinds of failure.
             pub enum FailureKind, ALL, word {
@@ -496,6 +496,13 @@ macro_rules! failure_kinds {
         }
 
         impl FailureKind {
+            /// The kind of a failure.
+            pub fn from_failure(failure: &Failure) -> FailureKind {
+                match failure {
+                    $($($failure => FailureKind::$kind,)?)*
+                }
+            }
+
             fn meaning(self) -> &'static str {
                 match self {
                     $(FailureKind::$kind => $meaning),*
@@ -506,54 +513,27 @@ macro_rules! failure_kinds {
 }
 
 failure_kinds! {
-    Cycle "cycle" "the minor iterations cycle",
-    MinorLimit "minor-limit" "the minor iterations reached their limit",
-    MajorLimit "major-limit" "the major iterations reached their limit",
-    MajorCycle "major-cycle" "the major iterations cycle",
-    Singular "singular" "the equations have no unique solution",
-    RoundOff "round-off" "round-off exceeds the loads",
-    PathReversal "path-reversal" "the path would return to where it came from",
-    ZeroMeasure "zero-measure" "the measure of the path does not change",
-    BranchJump "branch-jump" "the increment may have jumped to another branch",
-    NoRest "no-rest" "a damped motion does not settle",
-    Diverged "diverged" "residual or displacements grew without bound",
-    NoConsistentState "no-consistent-state" "no combination of modes is consistent",
-    LadderEnded "ladder-ended" "no strategy of the ladder succeeded",
-    NotFound "not-found" "a search found no consistent state",
-    LawViolated "law-violated" "the converged state violates a law",
-    InvertedElement "inverted-element" "an element is inverted",
-    CutTooOften "cut-too-often" "the increment was cut too often at one node",
-    OverConstrained "over-constrained" "node and surface cannot move apart",
-    Reported "reported" "an attached solver reported the failure",
+    Cycle "cycle" "the minor iterations cycle" Failure::Cycle(_),
+    MinorLimit "minor-limit" "the minor iterations reached their limit" Failure::MinorLimit { .. },
+    MajorLimit "major-limit" "the major iterations reached their limit" Failure::MajorLimit { .. },
+    MajorCycle "major-cycle" "the major iterations cycle" Failure::MajorCycle(_),
+    Singular "singular" "the equations have no unique solution" Failure::Singular(_),
+    RoundOff "round-off" "round-off exceeds the loads" Failure::RoundOff { .. },
+    PathReversal "path-reversal" "the path would return to where it came from" Failure::PathReversal,
+    ZeroMeasure "zero-measure" "the measure of the path does not change" Failure::ZeroMeasure,
+    BranchJump "branch-jump" "the increment may have jumped to another branch" Failure::BranchJump { .. },
+    NoRest "no-rest" "a damped motion does not settle" Failure::NoRest { .. },
+    Diverged "diverged" "residual or displacements grew without bound" Failure::Diverged { .. },
+    NoConsistentState "no-consistent-state" "no combination of modes is consistent" Failure::NoAnswer { .. },
+    LadderEnded "ladder-ended" "no strategy of the ladder succeeded" Failure::LadderEnded { .. },
+    NotFound "not-found" "a search found no consistent state" Failure::NotFound(_),
+    LawViolated "law-violated" "the converged state violates a law" Failure::Refused(_),
+    InvertedElement "inverted-element" "an element is inverted" Failure::Inverted(_),
+    CutTooOften "cut-too-often" "the increment was cut too often at one node" Failure::CutTooOften { .. },
+    OverConstrained "over-constrained" "node and surface cannot move apart" Failure::OverConstrained { .. },
+    Reported "reported" "an attached solver reported the failure" Failure::Reported { .. },
     IterationLimit "iteration-limit" "an attached solver reached `--max-iterations` in an increment",
     SolverLost "solver-lost" "an attached solver cannot continue",
-}
-
-impl FailureKind {
-    /// The kind of a failure.
-    pub fn from_failure(failure: &Failure) -> FailureKind {
-        match failure {
-            Failure::Cycle(_) => FailureKind::Cycle,
-            Failure::MinorLimit { .. } => FailureKind::MinorLimit,
-            Failure::MajorLimit { .. } => FailureKind::MajorLimit,
-            Failure::MajorCycle(_) => FailureKind::MajorCycle,
-            Failure::Singular(_) => FailureKind::Singular,
-            Failure::RoundOff { .. } => FailureKind::RoundOff,
-            Failure::PathReversal => FailureKind::PathReversal,
-            Failure::ZeroMeasure => FailureKind::ZeroMeasure,
-            Failure::BranchJump { .. } => FailureKind::BranchJump,
-            Failure::NoRest { .. } => FailureKind::NoRest,
-            Failure::Diverged { .. } => FailureKind::Diverged,
-            Failure::NoAnswer { .. } => FailureKind::NoConsistentState,
-            Failure::LadderEnded { .. } => FailureKind::LadderEnded,
-            Failure::NotFound(_) => FailureKind::NotFound,
-            Failure::Refused(_) => FailureKind::LawViolated,
-            Failure::Inverted(_) => FailureKind::InvertedElement,
-            Failure::CutTooOften { .. } => FailureKind::CutTooOften,
-            Failure::OverConstrained { .. } => FailureKind::OverConstrained,
-            Failure::Reported { .. } => FailureKind::Reported,
-        }
-    }
 }
 
 /// All records with their fields, and the kinds of failure, as Markdown.

@@ -18,7 +18,7 @@ use super::figure::assigned;
 use super::plan::product;
 use super::read::{Vary, pairs};
 use super::reference::Reference;
-use serde::Deserialize;
+use serde::{Deserialize, Deserializer};
 use std::path::PathBuf;
 use stickslip_scene::embedded_all;
 use stickslip_scene::format::read::value;
@@ -26,28 +26,35 @@ use stickslip_scene::{EmbeddedFile, Scene, SceneError};
 use stickslip_scene::{builtin, joined};
 
 /// A chart before it is measured.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Chart {
     /// Title.
+    #[serde(skip)]
     pub title: String,
     /// Scene, as for `Scene::open`.
     pub scene: String,
     /// Settings of all runs: path and value.
+    #[serde(default, deserialize_with = "pairs")]
     pub set: Vec<(String, String)>,
     /// Monitors whose error is measured; empty for all displacements.
+    #[serde(default)]
     pub monitors: Vec<String>,
     /// Monitors requested by name instead; the reference must have them.
+    #[serde(skip)]
     pub by: Vec<String>,
     /// Reference for the errors.
+    #[serde(default, rename = "finest", deserialize_with = "finest")]
     pub truth: Truth,
     /// Load factors at which errors are measured, besides the corners of the load path; empty for those of the reference.
+    #[serde(default)]
     pub loads: Vec<f64>,
     /// The curves in the order of the file.
     pub series: Vec<Series>,
 }
 
 /// The reference of a chart.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub enum Truth {
     /// The built-in table for the scene.
     Builtin,
@@ -56,6 +63,7 @@ pub enum Truth {
     /// A run with these settings.
     Run(Vec<(String, String)>),
     /// The run with the most unknowns and, among these, the most increments.
+    #[default]
     Finest,
     /// The limit of the three finest runs of a series, by Richardson extrapolation.
     Richardson,
@@ -100,21 +108,6 @@ pub fn text(name: &str) -> Option<&'static str> {
     found.map(|chart| chart.text)
 }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct File {
-    scene: String,
-    #[serde(default, deserialize_with = "pairs")]
-    set: Vec<(String, String)>,
-    #[serde(default)]
-    monitors: Vec<String>,
-    #[serde(default, deserialize_with = "pairs")]
-    finest: Vec<(String, String)>,
-    #[serde(default)]
-    loads: Vec<f64>,
-    series: Vec<Series>,
-}
-
 impl Chart {
     /// The chart of a scene: the built-in one or, if there is none, increments and meshes, which every scene
     /// has; with `over`, only the combinations of those settings.
@@ -127,14 +120,10 @@ impl Chart {
         let mut chart = match known {
             Some(file) => Chart::from_text(file.name, file.text)?,
             None => Chart {
-                title: String::new(),
                 scene: name.to_owned(),
-                set: Vec::new(),
-                monitors: Vec::new(),
-                by: Vec::new(),
                 truth: truth(&scene.name),
-                loads: Vec::new(),
                 series: any(),
+                ..Chart::default()
             },
         };
         chart.title.clone_from(&scene.spec.title);
@@ -151,21 +140,11 @@ impl Chart {
     /// # Errors
     /// If it cannot be read, with line and column.
     pub fn from_text(name: &str, text: &str) -> Result<Chart, SceneError> {
-        let file: File = value(name, text, "chart")?;
-        Ok(Chart {
-            title: String::new(),
-            truth: if file.finest.is_empty() {
-                truth(&file.scene)
-            } else {
-                Truth::Run(file.finest)
-            },
-            scene: file.scene,
-            set: file.set,
-            monitors: file.monitors,
-            by: Vec::new(),
-            loads: file.loads,
-            series: file.series,
-        })
+        let mut chart: Chart = value(name, text, "chart")?;
+        if chart.truth == Truth::Finest {
+            chart.truth = truth(&chart.scene);
+        }
+        Ok(chart)
     }
 }
 
@@ -183,6 +162,14 @@ fn series(along: &Vary, others: &[Vary]) -> Vec<Series> {
             set,
         })
         .collect()
+}
+
+/// Settings of the run that is the reference.
+fn finest<'de, D: Deserializer<'de>>(from: D) -> Result<Truth, D::Error> {
+    Ok(match pairs(from)? {
+        none if none.is_empty() => Truth::Finest,
+        settings => Truth::Run(settings),
+    })
 }
 
 /// The most accurate reference for a scene. A user's file is not the built-in scene of the same name.

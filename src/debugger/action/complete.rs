@@ -140,8 +140,6 @@ impl ActionEntry {
 /// The possible values of a setting, if they are words.
 fn values(before: &str) -> &'static [&'static str] {
     let path = before.split_whitespace().nth(1).unwrap_or_default();
-    let found = paths::of_settings()
-        .into_iter()
-        .find(|(own, _)| own == path);
-    found.map_or(&[], |(_, words)| words)
+    let found = paths::of_settings().find(|own| own.path == path);
+    found.map_or(&[], |own| own.words)
 }

@@ -64,7 +64,7 @@ pub(super) fn set_paths(context: &Context) -> Vec<String> {
             .collect();
     }
     let others = ["history.increment", "friction.angle", "friction.cohesion"];
-    let settings = paths::of_settings().into_iter().map(|(path, _)| path);
+    let settings = paths::of_settings().map(|own| own.path);
     others
         .map(String::from)
         .into_iter()

@@ -7,7 +7,6 @@ use super::described::{Described, ScalarPlace, Visit};
 use super::error::{Path, SetError, nearest, quoted};
 use super::spec::Spec;
 use crate::few;
-use stickslip_core::Settings;
 
 /// A value set from outside.
 #[derive(Debug, Clone, PartialEq)]
@@ -48,15 +47,10 @@ pub fn list(spec: &Spec) -> Vec<ListedScalar> {
     all
 }
 
-/// All settings by path, with their allowed words; no words for a number.
-pub fn of_settings() -> Vec<(String, &'static [&'static str])> {
-    let mut all = Vec::new();
-    let root = ScalarPlace::root();
-    let place = root.field("settings");
-    Settings::default().walk(&place, &mut |place, scalar| {
-        all.push((place.name(), scalar.words()));
-    });
-    all
+/// All settings, which every scene has.
+pub fn of_settings() -> impl Iterator<Item = ListedScalar> {
+    let all = list(&Spec::default()).into_iter();
+    all.filter(|listed| listed.path.starts_with("settings."))
 }
 
 /// Sets one scalar. Compiling the scene shows whether it is still valid.
