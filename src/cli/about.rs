@@ -1,6 +1,6 @@
 //! `stickslip --version --verbose`: build, machine, terminal and folders, for bug reports.
 
-use super::base::{Error, Exit, say};
+use super::base::{Error, Exit, answer};
 use std::env;
 use std::fmt::Write;
 use std::io::{IsTerminal, stderr, stdin, stdout};
@@ -38,8 +38,7 @@ pub fn main(verbose: bool) -> Result<Exit, Error> {
             let _ = writeln!(text, "{name:<10}{words}");
         }
     }
-    say(&text)?;
-    Ok(Exit::Good)
+    answer(&text)
 }
 
 fn features() -> String {

@@ -1,6 +1,6 @@
 //! `stickslip attach`: steps an external solver in the debugger, checks its protocol, or prints a client for writing one.
 
-use super::base::{Error, Exit, notify, say, usage};
+use super::base::{Error, Exit, answer, notify, say, usage};
 use super::debugger::{DEBUGGER, needs_terminal};
 use super::front;
 use super::solver::SolverArgs;
@@ -47,8 +47,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         (args.schema, SCHEMA),
     ];
     if let Some((_, text)) = clients.iter().find(|(asked, _)| *asked) {
-        say(text)?;
-        return Ok(Exit::Good);
+        return answer(text);
     }
     if !args.solver.is_named() {
         return Err(usage!(

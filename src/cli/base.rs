@@ -169,6 +169,12 @@ pub fn say(text: &str) -> Result<OutputState, Error> {
     print(&shown::text(text))
 }
 
+/// Prints the whole answer of a subcommand.
+pub fn answer(text: &str) -> Result<Exit, Error> {
+    say(text)?;
+    Ok(Exit::Good)
+}
+
 /// Writes data to standard output unchanged.
 pub fn print(text: &str) -> Result<OutputState, Error> {
     let mut out = io::stdout().lock();

@@ -1,6 +1,6 @@
 //! `stickslip check`: validates a scene and estimates its cost.
 
-use super::base::{Error, Exit, SceneArgs, notify, say};
+use super::base::{Error, Exit, SceneArgs, answer, notify, say};
 use super::json::{self, JsonArgs};
 use super::records::{CheckRecord, DeckRecord};
 use std::path::Path;
@@ -45,8 +45,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         (Err(why), None) => return Err(outlined.and_then(located).unwrap_or(why).into()),
     };
     if args.paths {
-        say(&all_paths(&scene))?;
-        return Ok(Exit::Good);
+        return answer(&all_paths(&scene));
     }
     let json = args.json.open(args.force)?;
     let cost = Cost::from_scene(&scene);

@@ -1,6 +1,6 @@
 //! `stickslip help [TOPIC]`: shows and searches the manual's pages, and shows the help of subcommands.
 
-use super::base::{Error, Exit, print, say, usage};
+use super::base::{Error, Exit, answer, print, say, usage};
 use std::ffi::OsString;
 use std::io::{IsTerminal, Write};
 use std::process::Stdio;
@@ -60,8 +60,7 @@ fn search(word: &str) -> Result<Exit, Error> {
         text += &format!("    {}\n", hit.line);
         above = here;
     }
-    say(&text)?;
-    Ok(Exit::Good)
+    answer(&text)
 }
 
 /// Shows a page, through a pager on a terminal, otherwise as plain text.

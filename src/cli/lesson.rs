@@ -1,7 +1,7 @@
 //! `stickslip lesson [NAME|FILE]`: lists the guided lessons, starts one, checks or prints one without a terminal, and collects what
 //! students hand in.
 
-use super::base::{Error, Exit, notify, say, usage};
+use super::base::{Error, Exit, answer, notify, say, usage};
 use super::debugger::needs_terminal;
 use super::front;
 use std::fmt::Write;
@@ -51,8 +51,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         return collect(&args.collect);
     }
     let Some(name) = &args.lesson else {
-        say(&list()?)?;
-        return Ok(Exit::Good);
+        return answer(&list()?);
     };
     let (name, step) = lesson::split_step(name);
     let lesson = match &args.scene {
@@ -65,8 +64,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         } else {
             sheet(lesson)?
         };
-        say(&text)?;
-        return Ok(Exit::Good);
+        return answer(&text);
     }
     front::ready()?;
     let instead = format!("lesson --check {name}` plays it without one");

@@ -1,6 +1,6 @@
 //! `stickslip list`: the built-in scenes, one line each.
 
-use super::base::{Error, Exit, say};
+use super::base::{Error, Exit, answer};
 use stickslip_scene::builtin;
 
 #[derive(Debug, clap::Args)]
@@ -13,6 +13,5 @@ pub fn main(_: &Args) -> Result<Exit, Error> {
         .iter()
         .map(|scene| format!("{:<width$}  {}\n", scene.name, builtin::title(scene)))
         .collect();
-    say(&lines)?;
-    Ok(Exit::Good)
+    answer(&lines)
 }

@@ -1,6 +1,6 @@
 //! `stickslip man`: pages for man, one for the program and one for each subcommand.
 
-use super::base::{Error, Exit, notify, say, usage};
+use super::base::{Error, Exit, answer, notify, usage};
 use clap_mangen::Man;
 use std::path::PathBuf;
 use stickslip_platform::files;
@@ -20,8 +20,7 @@ pub struct Args {
 pub fn main(args: &Args, mut program: clap::Command) -> Result<Exit, Error> {
     program.build();
     let Some(folder) = &args.output else {
-        say(&page(&program)?)?;
-        return Ok(Exit::Good);
+        return answer(&page(&program)?);
     };
     std::fs::create_dir_all(folder).map_err(|why| usage!("{}: {why}", folder.display()))?;
     let mut pages = Vec::new();

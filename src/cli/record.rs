@@ -1,6 +1,6 @@
 //! `stickslip record`: solves up to a position, and writes a snapshot of it.
 
-use super::base::{Error, Exit, notify, say};
+use super::base::{Error, Exit, answer, notify};
 use super::interrupt::Interrupt;
 use super::place::{RunPosition, notify_missed, seek};
 use super::solver::{Subject, SubjectArgs};
@@ -42,8 +42,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     let event = Some(solver.event());
     let text = Snapshot::take(&scene, &[], steps, solver.state(), event).to_text()?;
     let Some(mut output) = output else {
-        say(&text)?;
-        return Ok(Exit::Good);
+        return answer(&text);
     };
     output.append(text.as_bytes())?;
     output.finish()?;

@@ -1,6 +1,6 @@
 //! `stickslip screens`: screens of the debugger as pictures.
 
-use super::base::{Error, Exit, notify, say, usage};
+use super::base::{Error, Exit, answer, notify, usage};
 use super::front::{self, MAIN_SCREENS, MainScreen, SIZES};
 use std::path::PathBuf;
 use stickslip_core::counted;
@@ -37,8 +37,7 @@ pub struct Args {
 pub fn main(args: &Args) -> Result<Exit, Error> {
     front::ready()?;
     let Some(folder) = &args.output else {
-        say(&listed())?;
-        return Ok(Exit::Good);
+        return answer(&listed());
     };
     pen::ready().map_err(Error::usage)?;
     std::fs::create_dir_all(folder).map_err(|why| usage!("{}: {why}", folder.display()))?;

@@ -1,6 +1,6 @@
 //! `stickslip story JOURNAL`: prints a journal as text, or a finished run of CalculiX or of an attached solver.
 
-use super::base::{Error, Exit, say};
+use super::base::{Error, Exit, answer};
 use std::path::PathBuf;
 use stickslip_debugger::Recording;
 use stickslip_debugger::record::journal::{self, Record};
@@ -21,10 +21,8 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     if let Some(name) = journal.to_str()
         && let Some(mut recording) = Recording::open(name).map_err(Error::Usage)?
     {
-        say(&recording.text(name))?;
-        return Ok(Exit::Good);
+        return answer(&recording.text(name));
     }
     let record = Record::read(&journal)?;
-    say(&story(&record)?)?;
-    Ok(Exit::Good)
+    answer(&story(&record)?)
 }

@@ -81,13 +81,7 @@ pub(crate) fn arc(
     n: usize,
 ) -> Result<Vec<Point>, Fault> {
     point(&here.then("center"), center)?;
-    limits::finite(&here.then("radius"), radius, "the radius")?;
-    if radius <= 0.0 {
-        bail!(
-            here.then("radius"),
-            "the radius is {radius:?}; it must be positive"
-        );
-    }
+    limits::positive(&here.then("radius"), radius, "the radius")?;
     limits::finite(&here.then("from"), from, "the angle")?;
     limits::finite(&here.then("to"), to, "the angle")?;
     if from == to || (to - from).abs() > 360.0 {

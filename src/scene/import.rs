@@ -6,34 +6,32 @@
 //! `rest`; nodes without a cell are left out.
 
 use super::limits;
-use crate::format::error::{Fault, Path, at, fault, quoted, some_of};
+use crate::format::error::{Fault, at, quoted, some_of};
 use crate::format::given::{Cells, NodeSet, SideSet};
 use crate::format::read;
 use crate::format::spec::Nodes;
 use crate::groups::marked;
 use crate::{SceneError, Spec};
 use std::collections::HashMap;
+use std::path::Path;
 use stickslip_core::ElementKind;
 use stickslip_exchange::gmsh;
 use stickslip_exchange::mesh::{Cell, CellKind, Mesh};
 use stickslip_exchange::vtu::cell_type;
-use stickslip_platform::input;
+use stickslip_platform::input::{self, Unreadable};
 
 /// Maximum size of a mesh file in bytes.
 pub const MESH_BYTES: u64 = 512 << 20;
 /// Name of the part with elements in no group.
 const REST: &str = "rest";
 
-/// Reasons why a mesh cannot be imported.
-pub(super) enum ImportError {
-    /// An error in the scene's import entry.
-    Here(Fault),
-    /// An error in the mesh file.
-    There(SceneError),
-}
-
-/// Reads every mesh that a scene imports and adds it to the scene, whose file is `scene`; returns whether there are any.
-pub(super) fn resolve(spec: &mut Spec, scene: &str) -> Result<bool, ImportError> {
+/// Reads every mesh that a scene imports and adds it to the scene, whose file is `scene`; returns whether there are any. `place`
+/// locates errors in the scene.
+pub(super) fn resolve(
+    spec: &mut Spec,
+    scene: &str,
+    place: impl Fn(Fault) -> SceneError,
+) -> Result<bool, SceneError> {
     let mut any = false;
     for (k, nodes) in spec.nodes.iter_mut().enumerate() {
         if let Nodes::Import {
@@ -43,48 +41,31 @@ pub(super) fn resolve(spec: &mut Spec, scene: &str) -> Result<bool, ImportError>
             scale,
         } = nodes
         {
-            let here = at!["nodes", k];
+            let wrong =
+                |field: &str, message: String| place(Fault::new(at!["nodes", k, field], message));
             if !(scale.is_finite() && *scale > 0.0) {
                 let message = format!("the scale is {scale:?}; it must be positive");
-                return Err(ImportError::Here(Fault::new(here.then("scale"), message)));
+                return Err(wrong("scale", message));
             }
-            let mesh = read(&here.then("file"), scene, file)?;
+            let unread = |why: String| wrong("file", format!("{}: {why}", quoted(file)));
+            let path = input::path_in_folder(Path::new(scene), file).map_err(unread)?;
+            let bytes = bytes(&path).map_err(|why| unread(why.to_string()))?;
+            let mesh = mesh(&path.to_string_lossy(), &bytes)?;
             let given = mesh_nodes(id, &mesh, *reduced, *scale);
-            *nodes = given.map_err(|(field, message)| {
-                ImportError::Here(Fault::new(here.then(field), message))
-            })?;
+            *nodes = given.map_err(|(field, message)| wrong(field, message))?;
             any = true;
         }
     }
     Ok(any)
 }
 
-fn read(here: &Path, scene: &str, file: &str) -> Result<Mesh, ImportError> {
-    let unread = |message: String| ImportError::Here(fault!(here, "{}: {message}", quoted(file)));
-    let path = input::path_in_folder(std::path::Path::new(scene), file).map_err(unread)?;
-    mesh(&path.to_string_lossy()).map_err(|error| match error {
-        NoMesh::Unread(message) => unread(message),
-        NoMesh::Broken(error) => ImportError::There(error),
-    })
+fn bytes(file: &Path) -> Result<Vec<u8>, Unreadable> {
+    input::bytes(file, MESH_BYTES, "meshes are limited to that size")
 }
 
-/// Reasons why a file contains no usable mesh.
-pub(crate) enum NoMesh {
-    /// It cannot be read.
-    Unread(String),
-    /// It has an error.
-    Broken(SceneError),
-}
-
-/// Reads the mesh of a file.
-pub(crate) fn mesh(file: &str) -> Result<Mesh, NoMesh> {
-    let bytes = input::bytes(
-        std::path::Path::new(file),
-        MESH_BYTES,
-        "meshes are limited to that size",
-    )
-    .map_err(|error| NoMesh::Unread(error.to_string()))?;
-    gmsh::read(&bytes).map_err(|broken| NoMesh::Broken(read::of_file(file, broken)))
+/// The mesh in the bytes of a file.
+fn mesh(file: &str, bytes: &[u8]) -> Result<Mesh, SceneError> {
+    gmsh::read(bytes).map_err(|broken| read::of_file(file, broken))
 }
 
 /// Parts of a mesh that share no elements and together form the bodies; earlier names take precedence.
@@ -92,10 +73,8 @@ pub(crate) fn mesh(file: &str) -> Result<Mesh, NoMesh> {
 /// # Errors
 /// If the file contains no usable mesh.
 pub fn bodies(file: &str) -> Result<Vec<String>, SceneError> {
-    let mesh = mesh(file).map_err(|error| match error {
-        NoMesh::Unread(message) => SceneError::whole(file, message),
-        NoMesh::Broken(error) => error,
-    })?;
+    let bytes = bytes(Path::new(file)).map_err(|why| SceneError::whole(file, why.to_string()))?;
+    let mesh = mesh(file, &bytes)?;
     let lists = elements(&mesh).map_err(|(_, message)| SceneError::whole(file, message))?;
     let names = |cells: &Cells| [std::slice::from_ref(&cells.part), &cells.also].concat();
     let mut chosen: Vec<String> = Vec::new();
@@ -113,7 +92,7 @@ pub fn bodies(file: &str) -> Result<Vec<String>, SceneError> {
 
 /// Whether a file identifies itself as a mesh.
 pub fn is_mesh(file: &str) -> bool {
-    let start = input::start(std::path::Path::new(file), 64);
+    let start = input::start(Path::new(file), 64);
     start.is_ok_and(|start| gmsh::is_one(&start))
 }
 
@@ -252,12 +231,10 @@ fn usable(name: &str, dimension: usize) -> String {
 
 /// The error for a mesh that is given as a scene.
 pub(super) fn no_scene(file: &str) -> String {
-    let groups = match mesh(file) {
-        Ok(mesh) => mesh.groups.iter().map(|group| group.name.clone()).collect(),
-        Err(_) => Vec::new(),
-    };
+    let bytes = bytes(Path::new(file)).unwrap_or_default();
+    let groups = mesh(file, &bytes).map_or_else(|_| Vec::new(), |mesh| mesh.groups);
     format!(
         "this is a Gmsh mesh, not a scene; `stickslip export {file} -o SCENE.ron` writes a scene around it (groups: {})",
-        some_of(groups.iter().map(String::as_str))
+        some_of(groups.iter().map(|group| group.name.as_str()))
     )
 }

@@ -48,6 +48,15 @@ pub(crate) fn finite(path: &Path, value: f64, what: &str) -> Result<(), Fault> {
     ))
 }
 
+/// Rejects numbers that are not positive, too large or not finite.
+pub(crate) fn positive(path: &Path, value: f64, what: &str) -> Result<(), Fault> {
+    finite(path, value, what)?;
+    if value > 0.0 {
+        return Ok(());
+    }
+    Err(fault!(path, "{what} is {value:?}; it must be positive"))
+}
+
 /// Rejects invalid stiffnesses.
 pub(crate) fn stiffness(path: &Path, value: f64, what: &str) -> Result<(), Fault> {
     if (STIFFNESS.0..=STIFFNESS.1).contains(&value) {

@@ -8,7 +8,7 @@ use crate::format::error::{self, Path, Step, at};
 use crate::format::locate::{head, locate, too_deep};
 use crate::format::paths::Override;
 use crate::format::{Fault, condensed, read, stored};
-use crate::scene::{changed, imported, placed};
+use crate::scene::{changed, placed};
 use crate::{Scene, SceneError};
 use crate::{builtin, calculix, deck, import, problems, shown};
 use problems::siconos;
@@ -372,7 +372,7 @@ impl Source<'_> {
             return Err(place(&[], Fault::new(at!["attached"], why)));
         }
         let (mut spec, overrides) = changed(name, spec, self.overrides, Vec::new())?;
-        let imports = imported(&mut spec, name, |fault| place(&overrides, fault))?;
+        let imports = import::resolve(&mut spec, name, |fault| place(&overrides, fault))?;
         let mut scene = Scene::compiled(name, text, spec, overrides, place)?;
         scene.imports = imports;
         Ok(scene)

@@ -62,7 +62,7 @@ impl Scene {
             let whole = error::Path(path.0.iter().chain(&fault.path.0).cloned().collect());
             placed(name, text, &[], Fault::new(whole, fault.message))
         };
-        imported(&mut spec, name, at)?;
+        import::resolve(&mut spec, name, at)?;
         Scene::compiled(name, "", spec, Vec::new(), |_, fault| at(fault))
     }
 
@@ -149,19 +149,6 @@ impl Scene {
             imports: false,
         })
     }
-}
-
-/// Reads the meshes that a scene imports, and returns whether there are any; `name` is the scene's file, and `place` locates
-/// errors in it.
-pub(crate) fn imported(
-    spec: &mut Spec,
-    name: &str,
-    place: impl Fn(Fault) -> SceneError,
-) -> Result<bool, SceneError> {
-    import::resolve(spec, name).map_err(|refused| match refused {
-        import::ImportError::Here(fault) => place(fault),
-        import::ImportError::There(error) => error,
-    })
 }
 
 /// The scene of a file with additional values set from outside.

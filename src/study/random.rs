@@ -16,7 +16,7 @@
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::Rng;
 use std::ops::RangeInclusive;
-use stickslip_core::{Friction, Mode, Settings};
+use stickslip_core::Friction;
 use stickslip_scene::format::condensed::{Contact, Matrix, Problem};
 
 /// The default range of the number of nodes.
@@ -114,8 +114,7 @@ impl Population {
                 Form::Stiffness => [acts[2 * k], acts[2 * k + 1]],
                 _ => [0.0; 2],
             },
-            start: Mode::Free,
-            state: Default::default(),
+            ..Contact::default()
         };
         let contacts = (0..nodes).map(contact).collect();
         let (matrix, free) = match form {
@@ -123,17 +122,12 @@ impl Population {
             _ => (Matrix::Compliance(matrix), acts),
         };
         RandomProblem {
-            problem: Problem {
-                tangents: 1,
-                title: format!("Random interface problem {k} of seed {}", self.seed),
-                about: String::new(),
+            problem: Problem::new(
+                &format!("Random interface problem {k} of seed {}", self.seed),
                 contacts,
                 matrix,
                 free,
-                spacing: None,
-                history: Default::default(),
-                settings: Settings::default(),
-            },
+            ),
             form,
             cohesive,
         }

@@ -22,7 +22,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 use stickslip_core::interface::census::census;
 use stickslip_core::plane::max_abs;
-use stickslip_core::{Model, RunEnd, Settings, Stepper, Until};
+use stickslip_core::{Model, RunEnd, Stepper, Until};
 use stickslip_scene::base::{Base, Method};
 use stickslip_scene::format::condensed::{Matrix, Problem};
 use stickslip_scene::format::paths;
@@ -110,17 +110,7 @@ pub struct PreparedVariant<'a> {
 /// Prepares variants to be tried on many problems.
 pub fn prepared(variants: &[Variant]) -> Vec<PreparedVariant<'_>> {
     // All problems share this history and these settings, and nothing else matters here.
-    let common = Problem {
-        tangents: 1,
-        title: String::new(),
-        about: String::new(),
-        contacts: Vec::new(),
-        matrix: Matrix::Stiffness(Vec::new()),
-        free: Vec::new(),
-        spacing: None,
-        history: Default::default(),
-        settings: Settings::default(),
-    };
+    let common = Problem::new("", Vec::new(), Matrix::Stiffness(Vec::new()), Vec::new());
     let spec = common.spec();
     variants
         .iter()
@@ -319,27 +309,17 @@ mod tests {
 
     /// A node on two unit springs, with load (−1, 1) along n and t and friction μ = 0.5: it slides, u_t = 0.5.
     fn slider() -> Problem {
-        Problem {
-            tangents: 1,
-            title: "slider".to_owned(),
-            about: String::new(),
-            contacts: vec![Contact {
-                id: "a".to_owned(),
-                gap: 0.0,
-                friction: Friction {
-                    angle: 0.5_f64.atan().to_degrees(),
-                    cohesion: 0.0,
-                },
-                load: [-1.0, 1.0],
-                start: Default::default(),
-                state: Default::default(),
-            }],
-            matrix: Matrix::Stiffness(vec![vec![1.0, 0.0], vec![0.0, 1.0]]),
-            free: Vec::new(),
-            spacing: None,
-            history: Default::default(),
-            settings: Default::default(),
-        }
+        let contact = Contact {
+            id: "a".to_owned(),
+            friction: Friction {
+                angle: 0.5_f64.atan().to_degrees(),
+                cohesion: 0.0,
+            },
+            load: [-1.0, 1.0],
+            ..Contact::default()
+        };
+        let matrix = Matrix::Stiffness(vec![vec![1.0, 0.0], vec![0.0, 1.0]]);
+        Problem::new("slider", vec![contact], matrix, Vec::new())
     }
 
     #[test]

@@ -35,26 +35,21 @@ pub fn problem(model: &Model, state: &State, posed: &ReportedProblem) -> Problem
     });
     let rows = posed.matrix.clone();
     let free = (0..posed.q.len()).map(|k| if k % 2 == 0 { 0.0 } else { posed.q[k] });
+    let title: String = format!("Interface problem of {}", model.title)
+        .chars()
+        .filter(|c| !c.is_control())
+        .take(limits::TITLE)
+        .collect();
+    let matrix = match posed.form {
+        ReportedForm::Compliance => Matrix::Compliance(rows),
+        ReportedForm::Stiffness => Matrix::Stiffness(rows),
+    };
     Problem {
-        tangents: 1,
-        title: format!("Interface problem of {}", model.title)
-            .chars()
-            .filter(|c| !c.is_control())
-            .take(limits::TITLE)
-            .collect(),
-        about: String::new(),
-        contacts: contacts.collect(),
-        matrix: match posed.form {
-            ReportedForm::Compliance => Matrix::Compliance(rows),
-            ReportedForm::Stiffness => Matrix::Stiffness(rows),
-        },
-        free: free.collect(),
-        spacing: None,
-        history: Default::default(),
         settings: stickslip_core::Settings {
             strategy: Strategy::Table2,
             ..Default::default()
         },
+        ..Problem::new(&title, contacts.collect(), matrix, free.collect())
     }
 }
 

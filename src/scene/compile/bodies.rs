@@ -46,13 +46,7 @@ fn elastic(here: &Path, material: &Material) -> Result<(), Fault> {
         );
     }
     let thickness = made.thickness;
-    limits::finite(&here.then("thickness"), thickness, "the thickness")?;
-    if thickness <= 0.0 {
-        bail!(
-            here.then("thickness"),
-            "the thickness is {thickness:?}; it must be positive"
-        );
-    }
+    limits::positive(&here.then("thickness"), thickness, "the thickness")?;
     if made.plane == Plane::Axisymmetric && thickness != 1.0 {
         bail!(
             here.then("thickness"),

@@ -22,17 +22,9 @@ const TOUCHES: f64 = 1e-9;
 
 /// Rejects invalid parameters of a pair's law.
 pub(super) fn check(here: &Path, group: &SlaveSpec) -> Result<(), Fault> {
-    let positive = |at: Path, value: f64, what: &str| {
-        limits::finite(&at, value, what)?;
-        if value > 0.0 {
-            Ok(())
-        } else {
-            Err(fault!(at, "{what} is {value:?}; it must be positive"))
-        }
-    };
     if let Some(stiffness) = group.law.stiffness() {
         let place = here.then("law").then("stiffness");
-        positive(place, stiffness, "the stiffness")?;
+        limits::positive(&place, stiffness, "the stiffness")?;
     }
     if !group.by.is_node() && group.law.stiffness().is_none() {
         bail!(
@@ -47,10 +39,10 @@ pub(super) fn check(here: &Path, group: &SlaveSpec) -> Result<(), Fault> {
         );
     }
     if let Some(stick) = group.stick {
-        positive(here.then("stick"), stick, "the stick stiffness")?;
+        limits::positive(&here.then("stick"), stick, "the stick stiffness")?;
     }
     if let Some(area) = group.area {
-        positive(here.then("area"), area, "the tributary area")?;
+        limits::positive(&here.then("area"), area, "the tributary area")?;
     }
     if !group.law.is_tied() {
         return Ok(());

@@ -10,7 +10,6 @@ use crate::format::spec::{Nodes, SlaveSpec, SurfaceSpec};
 use crate::groups::Connected;
 use crate::number::sig4;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
-use stickslip_core::Mode;
 use stickslip_core::model::{InitialGaps, SlavePoints};
 use stickslip_core::plane::{distance, distance_to_segment, range};
 use stickslip_exchange::inp::DeckLocation;
@@ -188,11 +187,10 @@ impl DeckObjects<'_> {
                 self.spec.surfaces.push(SurfaceSpec {
                     id: id.clone(),
                     along: format!("{MESH}.{id}"),
-                    reverse: false,
-                    endless: false,
                     past_ends: if by_nodes { PAST_ENDS } else { 0.0 },
                     smooth,
                     cut,
+                    ..SurfaceSpec::default()
                 });
             }
             made.insert(touching.master, ids);
@@ -411,13 +409,11 @@ impl DeckObjects<'_> {
         self.spec.slaves.push(SlaveSpec {
             nodes,
             on,
-            start: Mode::Free,
             friction: (!laws.law.is_tied()).then(|| rough(laws.friction)),
             law: laws.law,
             stick: laws.stick,
             by: laws.by,
-            area: None,
-            state: Default::default(),
+            ..SlaveSpec::default()
         });
         Ok(())
     }

@@ -15,7 +15,6 @@
 //! [`Problem::spec`] converts it to an ordinary scene: the contacts in a row above an endless floor y = 0, where u_n = u_y and
 //! u_t = −u_x.
 
-use super::contact_law::ContactLaw;
 use super::error::{Path, Step, at};
 use super::in_space::SpaceSpec;
 use super::notation;
@@ -23,7 +22,6 @@ use super::spec::{BodySpec, History, LoadSpec, Nodes, SlaveSpec, Spec, SurfaceSp
 use crate::joined;
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize};
-use stickslip_core::model::SlavePoints;
 use stickslip_core::{Friction, InitialState, Mode, Settings};
 use stickslip_exchange::problem;
 
@@ -42,7 +40,7 @@ pub enum Matrix {
 }
 
 /// One contact.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Contact {
     /// Name of the node.
@@ -119,6 +117,21 @@ fn positive<'de, D: Deserializer<'de>>(reader: D) -> Result<Option<f64>, D::Erro
 }
 
 impl Problem {
+    /// A plane problem with the default history and settings.
+    pub fn new(title: &str, contacts: Vec<Contact>, matrix: Matrix, free: Vec<f64>) -> Problem {
+        Problem {
+            title: title.to_owned(),
+            about: String::new(),
+            tangents: one(),
+            contacts,
+            matrix,
+            free,
+            spacing: None,
+            history: History::default(),
+            settings: Settings::default(),
+        }
+    }
+
     /// The path in the problem's own file of a value of the converted scene.
     pub(crate) fn origin(&self, of_scene: &Path) -> Path {
         let Some((Step::Key(list), rest)) = of_scene.0.split_first() else {
@@ -212,11 +225,8 @@ impl Problem {
             surfaces: vec![SurfaceSpec {
                 id: FLOOR.to_owned(),
                 along: FLOOR.to_owned(),
-                reverse: false,
                 endless: true,
-                past_ends: 0.0,
-                smooth: false,
-                cut: false,
+                ..SurfaceSpec::default()
             }],
             slaves: self.contacts.iter().map(slave).collect(),
             loads: self.contacts.iter().filter_map(load).collect(),
@@ -273,9 +283,7 @@ impl Problem {
             .fold(0.0, f64::max);
         if most > 0.0 { most } else { 1.0 }
     }
-}
 
-impl Problem {
     /// The text of the file: comment lines, then every field that differs from its default. Numbers are written with enough
     /// digits to be read back exactly.
     pub fn text(&self, comments: &[String]) -> String {
@@ -401,11 +409,8 @@ fn slave(contact: &Contact) -> SlaveSpec {
         on: vec![FLOOR.to_owned()],
         start: contact.start,
         friction: Some(contact.friction.into()),
-        law: ContactLaw::Hard,
-        stick: None,
-        by: SlavePoints::Node,
-        area: None,
         state: contact.state,
+        ..SlaveSpec::default()
     }
 }
 

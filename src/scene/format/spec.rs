@@ -5,6 +5,7 @@
 
 use super::arc::ArcSpec;
 use super::contact_law::{ContactLaw, FrictionSpec, is_zero};
+use super::described::Described;
 use super::described::macros::described;
 use super::given::{Cells, NodeSet, SideSet};
 use super::in_space::SpaceSpec;
@@ -243,17 +244,7 @@ described! {
 impl Nodes {
     /// The id.
     pub fn id(&self) -> &str {
-        match self {
-            Nodes::Node { id, .. }
-            | Nodes::Line { id, .. }
-            | Nodes::Arc { id, .. }
-            | Nodes::Through { id, .. }
-            | Nodes::Block { id, .. }
-            | Nodes::Mesh { id, .. }
-            | Nodes::Chain { id, .. }
-            | Nodes::Given { id, .. }
-            | Nodes::Import { id, .. } => id,
-        }
+        self.called().unwrap_or_default()
     }
 }
 
@@ -371,9 +362,7 @@ fn unit() -> f64 {
 impl Material {
     /// The id.
     pub fn id(&self) -> &str {
-        match self {
-            Material::Section { id, .. } | Material::Elastic { id, .. } => id,
-        }
+        self.called().unwrap_or_default()
     }
 }
 
@@ -476,13 +465,7 @@ described! {
 impl BodySpec {
     /// The id.
     pub fn id(&self) -> &str {
-        match self {
-            BodySpec::Beam { id, .. }
-            | BodySpec::Solid { id, .. }
-            | BodySpec::Truss { id, .. }
-            | BodySpec::Matrix { id, .. }
-            | BodySpec::Springs { id, .. } => id,
-        }
+        self.called().unwrap_or_default()
     }
 }
 
@@ -491,6 +474,7 @@ described! {
     ///
     /// The outward side is on the right when walking along the chain (the body is on the left, as on the boundary of a body
     /// walked anticlockwise). Nodes that belong to no body are fixed: the surface is rigid and adds no unknowns.
+    #[derive(Default)]
     pub struct SurfaceSpec {
         /// Name of the surface.
         pub id: String => name,
@@ -522,6 +506,7 @@ described! {
 
 described! {
     /// Slave nodes and the surfaces that they may touch.
+    #[derive(Default)]
     pub struct SlaveSpec {
         /// Names of nodes. `ID.all` means every node of a chain, and an edge such as `ID.left` of a block all its nodes, except
         /// nodes that cannot move if the surface cannot move either. A corner of two edges counts once.

@@ -109,20 +109,17 @@ pub fn read(file: &str, text: &str, memory: Option<f64>) -> Result<Problem, Scen
     if q.is_none() && !(names.stiffness && f.is_some()) {
         return Err(missing("q"));
     }
+    let (contacts, free) = (contacts(&mu, &f.unwrap_or_default()), q.unwrap_or_default());
+    let matrix = if names.stiffness {
+        Matrix::Stiffness(matrix.dense())
+    } else {
+        compliance(matrix)
+    };
     Ok(Problem {
-        title: super::title(file),
         about: "An interface problem from Matrix Market files.".to_owned(),
         tangents,
-        contacts: contacts(&mu, &f.unwrap_or_default()),
-        matrix: if names.stiffness {
-            Matrix::Stiffness(matrix.dense())
-        } else {
-            compliance(matrix)
-        },
-        free: q.unwrap_or_default(),
-        spacing: None,
-        history: Default::default(),
         settings: settings(mu.len()),
+        ..Problem::new(&super::title(file), contacts, matrix, free)
     })
 }
 

@@ -11,7 +11,7 @@ use crate::format::condensed::{Contact, Problem};
 use crate::limits;
 use stickslip_core::linear::sparse_contacts::FEW;
 use stickslip_core::model::LinearSolver;
-use stickslip_core::{Friction, InitialState, Mode, Settings, Strategy};
+use stickslip_core::{Friction, Settings, Strategy};
 use stickslip_exchange::FormatError;
 use stickslip_exchange::problem::{self, Local};
 use stickslip_exchange::siconos;
@@ -139,15 +139,15 @@ pub(super) fn coefficient(mu: f64) -> Result<(), String> {
 /// A condensed problem in the format of the scene.
 pub(super) fn problem(local: Local, title: &str) -> Problem {
     Problem {
-        title: title.to_owned(),
         about: "A friction problem in Siconos' format: u = W r + q.".to_owned(),
         tangents: local.dimension() - 1,
-        contacts: contacts(&local.mu, &[]),
         settings: settings(local.mu.len()),
-        matrix: super::compliance(local.w),
-        free: local.q,
-        spacing: None,
-        history: Default::default(),
+        ..Problem::new(
+            title,
+            contacts(&local.mu, &[]),
+            super::compliance(local.w),
+            local.q,
+        )
     }
 }
 
@@ -184,14 +184,12 @@ impl Friction2d {
 pub(super) fn contacts(mu: &[f64], loads: &[f64]) -> Vec<Contact> {
     let contact = |(k, &mu): (usize, &f64)| Contact {
         id: format!("c{}", k + 1),
-        gap: 0.0,
         friction: friction(mu),
         load: match loads.get(2 * k..2 * k + 2) {
             Some(load) => [load[0], load[1]],
             None => [0.0; 2],
         },
-        start: Mode::Free,
-        state: InitialState::default(),
+        ..Contact::default()
     };
     mu.iter().enumerate().map(contact).collect()
 }

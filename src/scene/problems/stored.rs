@@ -18,7 +18,6 @@ use crate::format::read;
 use crate::format::stored::{RigidContact, Stored};
 use crate::scene::placed;
 use std::collections::HashMap;
-use stickslip_core::InitialState;
 use stickslip_exchange::calculix::stiffness::{self, MatrixUnknown};
 use stickslip_exchange::problem;
 use stickslip_platform::input;
@@ -262,9 +261,10 @@ impl<'s> StoredParts<'s> {
             friction: point.touching.friction,
             load: loads.get(k).copied().unwrap_or_default(),
             start: point.touching.start,
-            state: InitialState::default(),
+            ..Contact::default()
         };
         let spec = self.spec;
+        let contacts = self.contacts.iter().enumerate().map(contact);
         let largest = spec
             .moved
             .iter()
@@ -274,15 +274,11 @@ impl<'s> StoredParts<'s> {
             .map(f64::abs)
             .fold(0.0, f64::max);
         Problem {
-            tangents: 1,
-            title: spec.title.clone(),
             about: spec.about.clone(),
-            contacts: self.contacts.iter().enumerate().map(contact).collect(),
-            matrix,
-            free,
             spacing: spec.spacing.or((largest > 0.0).then_some(largest)),
             history: spec.history.clone(),
             settings: spec.settings,
+            ..Problem::new(&spec.title, contacts.collect(), matrix, free)
         }
     }
 }

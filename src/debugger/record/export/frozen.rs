@@ -210,18 +210,12 @@ fn text(
             refused.push(format!("no {form}: {why}"));
             continue;
         };
+        let contact = |place: usize| contact(problem, place, &ids[place], loads[place]);
+        let contacts = (0..count).map(contact).collect();
         let written = Problem {
-            tangents: 1,
-            title: shortened(&title),
-            about: String::new(),
-            contacts: (0..count)
-                .map(|place| contact(problem, place, &ids[place], loads[place]))
-                .collect(),
-            matrix,
-            free,
             spacing: Some(spacing(problem)),
-            history: Default::default(),
             settings: settings(&problem.settings),
+            ..Problem::new(&shortened(&title), contacts, matrix, free)
         };
         let text = written.text(&comments);
         if text.len() > read::FILE_BYTES {
