@@ -1,6 +1,7 @@
 //! Shared by all subcommands: exit codes, errors, scene arguments and output.
 
 use std::convert::Infallible;
+use std::fmt::Display;
 use std::io::{self, Write};
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -57,6 +58,9 @@ pub enum Error {
     Again(String),
     #[error("standard output: {0}")]
     Output(io::Error),
+    /// The subcommand has said why it ends.
+    #[error("ended")]
+    Ended(Exit),
 }
 
 /// A usage error with a formatted message.
@@ -77,6 +81,12 @@ impl From<RunError> for Error {
 }
 
 impl Error {
+    /// Reports why there is no result, which ends the subcommand.
+    pub fn ended(exit: Exit, name: &str, why: impl Display) -> Error {
+        notify(&format!("{name}: {why}"));
+        Error::Ended(exit)
+    }
+
     /// Another error as one of usage.
     pub fn usage(error: impl ToString) -> Error {
         Error::Usage(error.to_string())

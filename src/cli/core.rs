@@ -51,13 +51,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
             (scene.name, text)
         }
     };
-    let text = match text {
-        Ok(text) => text,
-        Err(why) => {
-            notify(&format!("{name}: {why}"));
-            return Ok(Exit::Unconverged);
-        }
-    };
+    let text = text.map_err(|why| Error::ended(Exit::Unconverged, &name, why))?;
     put(Some(&args.output), &text, args.force)
 }
 
@@ -79,8 +73,7 @@ fn of_solver(solver: &mut Attached) -> Result<Result<String, Refusal>, Error> {
         at: event.position,
         load: event.load_factor,
     };
-    let text = exports::core_of_reported(&model, &state, &posed, &origin);
-    Ok(text)
+    Ok(exports::core_of_reported(&model, &state, &posed, &origin))
 }
 
 /// The core's file, or why there is none.

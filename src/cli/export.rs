@@ -5,7 +5,7 @@ use super::base::{Error, Exit, SetArgs, notify, usage};
 use super::course::Course;
 use super::front;
 use super::interrupt::Interrupt;
-use super::place::{RunPosition, notify_missed, seek};
+use super::place::{RunPosition, missed, seek};
 use super::solver::{SolverArgs, session_of, step_to_end};
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
@@ -143,10 +143,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         _ if calculix::is_cel(args.input()) => vec![switches(args, kind)?],
         _ if import::is_mesh(args.input()) => vec![around_mesh(args, kind)?],
         ExportSource::Journal => vec![film(args)?],
-        ExportSource::State(_) | ExportSource::Parts(_) => match state(args, kind, &interrupt)? {
-            Ok(contents) => contents,
-            Err(exit) => return Ok(exit),
-        },
+        ExportSource::State(_) | ExportSource::Parts(_) => state(args, kind, &interrupt)?,
     };
     let whole: Vec<_> = names.into_iter().zip(contents).collect();
     files::write_all(&whole, args.force)?;
@@ -171,14 +168,12 @@ fn reported(args: &Args, interrupt: &Interrupt) -> Result<Exit, Error> {
     };
     match args.at {
         Some(at) => {
-            if let Err(missed) = seek(&mut solver, at, interrupt, &mut |_| ()) {
-                return Ok(notify_missed(&scene, &solver, at, missed));
-            }
+            seek(&mut solver, at, interrupt, &mut |_| ())
+                .map_err(|why| missed(&scene, &solver, at, why))?;
         }
         None => {
             if step_to_end(&mut solver, Some(interrupt), &mut |_| ())? == RunEnd::Interrupted {
-                notify(&format!("{}: interrupted", scene.name));
-                return Ok(Exit::Interrupted);
+                return Err(Error::ended(Exit::Interrupted, &scene.name, "interrupted"));
             }
         }
     }
@@ -198,13 +193,9 @@ fn reported(args: &Args, interrupt: &Interrupt) -> Result<Exit, Error> {
         state: Box::new(state),
         shown: None,
     };
-    match exports::write_posed(&scene.model, &posed, &ask) {
-        Ok(()) => notify(&format!("wrote {}", args.output.display())),
-        Err(why) => {
-            notify(&format!("{}: {why}", scene.name));
-            return Ok(Exit::Unconverged);
-        }
-    }
+    exports::write_posed(&scene.model, &posed, &ask)
+        .map_err(|why| Error::ended(Exit::Unconverged, &scene.name, why))?;
+    notify(&format!("wrote {}", args.output.display()));
     Ok(Exit::Good)
 }
 
@@ -366,11 +357,7 @@ fn open(args: &Args) -> Result<Course, Error> {
 }
 
 /// The files' contents, or the exit code if there are none.
-fn state(
-    args: &Args,
-    kind: &ExportKind,
-    interrupt: &Interrupt,
-) -> Result<Result<Vec<Vec<u8>>, Exit>, Error> {
+fn state(args: &Args, kind: &ExportKind, interrupt: &Interrupt) -> Result<Vec<Vec<u8>>, Error> {
     let course = open(args)?;
     let scene = &course.scene;
     let mut stepper = solver(Arc::new(scene.model.clone()));
@@ -380,10 +367,7 @@ fn state(
     // The scene file itself needs no solve.
     let solves = kind.extension != "ron" || args.frozen;
     let ended = if solves {
-        match drive(&course, args.at, &mut stepper, &mut seen, interrupt)? {
-            Ok(ended) => ended,
-            Err(exit) => return Ok(Err(exit)),
-        }
+        drive(&course, args.at, &mut stepper, &mut seen, interrupt)?
     } else {
         String::new()
     };
@@ -396,14 +380,9 @@ fn state(
         frozen: args.frozen,
         ..seen.shown(scene, &origin, (&state, event.as_ref()), &picture)
     };
-    match kind.made(&shown, &mut stepper) {
-        None => Ok(Err(Exit::Bad)),
-        Some(Ok(contents)) => Ok(Ok(contents)),
-        Some(Err(why)) => {
-            notify(&format!("{}: {why}", scene.name));
-            Ok(Err(Exit::Unconverged))
-        }
-    }
+    let made = kind.made(&shown, &mut stepper);
+    let made = made.ok_or(Error::Ended(Exit::Bad))?;
+    made.map_err(|why| Error::ended(Exit::Unconverged, &scene.name, why))
 }
 
 fn origin(course: &Course, at: Position, state: &State) -> Origin {
@@ -424,21 +403,15 @@ fn drive(
     stepper: &mut Stepper,
     seen: &mut RunHistory<'_>,
     interrupt: &Interrupt,
-) -> Result<Result<String, Exit>, Error> {
+) -> Result<String, Error> {
     let (scene, name) = (&course.scene, &course.scene.name);
     if let Some(at) = at {
-        let found = seek(stepper, at, interrupt, &mut |stepper| seen.add(stepper));
-        return Ok(match found {
-            Ok(_) => Ok(String::new()),
-            Err(missed) => Err(notify_missed(scene, stepper, at, missed)),
-        });
+        return seek(stepper, at, interrupt, &mut |stepper| seen.add(stepper))
+            .map(|_| String::new())
+            .map_err(|why| missed(scene, stepper, at, why));
     }
-    let end = course.go(stepper, interrupt, |stepper| seen.add(stepper))?;
-    Ok(match end {
-        RunEnd::Interrupted => {
-            notify(&format!("{name}: interrupted"));
-            Err(Exit::Interrupted)
-        }
+    match course.go(stepper, interrupt, |stepper| seen.add(stepper))? {
+        RunEnd::Interrupted => Err(Error::ended(Exit::Interrupted, name, "interrupted")),
         RunEnd::Failed(failure) => {
             let words = failures::describe(&scene.model, &failure);
             let at = names::position(stepper.event().position);
@@ -449,5 +422,5 @@ fn drive(
             Status::Failed(failure) => failures::describe(&scene.model, failure),
             _ => String::new(),
         }),
-    })
+    }
 }

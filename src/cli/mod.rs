@@ -200,11 +200,13 @@ pub fn main() -> ExitCode {
     };
     ended
         .unwrap_or_else(|error| {
-            notify(&error.to_string());
-            match error {
+            let exit = match error {
+                base::Error::Ended(exit) => return exit,
                 base::Error::Again(_) => Exit::Again,
                 _ => Exit::Bad,
-            }
+            };
+            notify(&error.to_string());
+            exit
         })
         .into()
 }

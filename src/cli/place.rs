@@ -1,6 +1,6 @@
 //! Positions in a run, as given to `--at`.
 
-use super::base::{Exit, notify};
+use super::base::{Error, Exit};
 use super::interrupt::Interrupt;
 use std::fmt;
 use std::ops::ControlFlow;
@@ -125,40 +125,25 @@ pub fn seek<T: Solver + ?Sized>(
     }
 }
 
-pub fn notify_missed(
-    scene: &Scene,
-    solver: &dyn Solver,
-    at: RunPosition,
-    missed: SeekFailure,
-) -> Exit {
+pub fn missed(scene: &Scene, solver: &dyn Solver, at: RunPosition, why: SeekFailure) -> Error {
     let (event, name) = (solver.event(), &scene.name);
-    match missed {
+    let (exit, text) = match why {
         SeekFailure::Failed(failure) => {
-            let text = report::failure(
-                &scene.model,
-                solver.state(),
-                event.position,
-                event.load_factor,
-                &failure,
-            );
-            notify(&format!("{name}: {at} not reached: {text}"));
-            Exit::Unconverged
+            let (at_event, load) = (event.position, event.load_factor);
+            let text = report::failure(&scene.model, solver.state(), at_event, load, &failure);
+            (Exit::Unconverged, format!("{at} not reached: {text}"))
         }
-        SeekFailure::Lost(lost) => {
-            notify(&format!("{name}: {at} not reached: {lost}"));
-            Exit::Unconverged
-        }
+        SeekFailure::Lost(lost) => (Exit::Unconverged, format!("{at} not reached: {lost}")),
         SeekFailure::Interrupted => {
             let reached = names::position(event.position);
-            notify(&format!("{name}: interrupted after {reached}"));
-            Exit::Interrupted
+            (Exit::Interrupted, format!("interrupted after {reached}"))
         }
         SeekFailure::Absent => {
             let reached = report::outcome(&scene.model, event);
-            notify(&format!("{name}: no position {at}: {reached}"));
-            Exit::Bad
+            (Exit::Bad, format!("no position {at}: {reached}"))
         }
-    }
+    };
+    Error::ended(exit, name, text)
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use super::base::{Error, Exit, answer, notify};
 use super::interrupt::Interrupt;
-use super::place::{RunPosition, notify_missed, seek};
+use super::place::{RunPosition, missed, seek};
 use super::solver::{Subject, SubjectArgs};
 use std::path::PathBuf;
 use stickslip_debugger::Snapshot;
@@ -35,10 +35,8 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         name if name == "-" => None,
         _ => Some(Output::create(&path, args.force)?),
     };
-    let steps = match seek(&mut *solver, args.at, &interrupt, &mut |_| {}) {
-        Ok(steps) => steps,
-        Err(missed) => return Ok(notify_missed(&scene, &*solver, args.at, missed)),
-    };
+    let steps = seek(&mut *solver, args.at, &interrupt, &mut |_| {})
+        .map_err(|why| missed(&scene, &*solver, args.at, why))?;
     let event = Some(solver.event());
     let text = Snapshot::take(&scene, &[], steps, solver.state(), event).to_text()?;
     let Some(mut output) = output else {

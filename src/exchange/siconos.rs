@@ -23,15 +23,6 @@ use crate::problem::{Global, Local, Matrix, Problem, is_there};
 use crate::words::Words;
 use std::fmt::{Debug, Write};
 
-/// How to write W.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Storage {
-    /// All entries, column by column.
-    Dense,
-    /// One block per pair of contacts, without zero blocks.
-    Blocks,
-}
-
 /// Reads such a file.
 ///
 /// # Errors
@@ -344,60 +335,17 @@ fn sparse(
 }
 
 /// The file of a local problem. Numbers are written with enough digits to be read back exactly.
-pub fn write(problem: &Local, storage: Storage) -> String {
+pub fn write(problem: &Local) -> String {
     let size = problem.q.len();
-    let dimension = problem.dimension();
-    let mut text = format!("{dimension}\n{}\n", problem.mu.len());
+    let mut text = format!("{}\n{}\n", problem.dimension(), problem.mu.len());
     let rows = problem.w.dense();
-    match storage {
-        Storage::Dense => {
-            let _ = writeln!(text, "0\n{size}\n{size}\n{size}\t{size}");
-            for column in 0..size {
-                line(&mut text, rows.iter().map(|row| row[column]));
-            }
-        }
-        Storage::Blocks => {
-            let _ = writeln!(text, "1\n{size}\n{size}");
-            write_blocks(&mut text, &rows, dimension);
-        }
+    let _ = writeln!(text, "0\n{size}\n{size}\n{size}\t{size}");
+    for column in 0..size {
+        line(&mut text, rows.iter().map(|row| row[column]));
     }
     line(&mut text, problem.q.iter());
     line(&mut text, problem.mu.iter());
     text
-}
-
-fn write_blocks(text: &mut String, rows: &[Vec<f64>], dimension: usize) {
-    let contacts = rows.len() / dimension;
-    let entries = |i: usize, j: usize| -> Vec<f64> {
-        (0..dimension)
-            .flat_map(|b| (0..dimension).map(move |a| (a, b)))
-            .map(|(a, b)| rows[dimension * i + a][dimension * j + b])
-            .collect()
-    };
-    let (mut begins, mut columns, mut blocks) = (vec![0], Vec::new(), String::new());
-    for i in 0..contacts {
-        for j in 0..contacts {
-            let block = entries(i, j);
-            if block.iter().any(|v| *v != 0.0) {
-                let _ = writeln!(blocks, "{}", columns.len());
-                line(&mut blocks, block.into_iter());
-                columns.push(j);
-            }
-        }
-        begins.push(columns.len());
-    }
-    if columns.is_empty() {
-        text.push_str("0\n");
-        return;
-    }
-    let _ = writeln!(text, "{}\n{contacts}\n{contacts}", columns.len());
-    for _ in 0..2 {
-        line(text, (1..=contacts).map(|k| dimension * k));
-    }
-    let _ = writeln!(text, "{}\n{}", begins.len(), columns.len());
-    line(text, begins.iter());
-    line(text, columns.iter());
-    text.push_str(&blocks);
 }
 
 /// Words on one line, separated by spaces.
@@ -517,11 +465,9 @@ mod tests {
             mu in prop::collection::vec(0.0..9.0_f64, 2),
         ) {
             let problem = Local { w: Matrix::from_rows(&rows), q, mu };
-            for storage in [Storage::Dense, Storage::Blocks] {
-                let found = local(&write(&problem, storage));
-                prop_assert_eq!(found.w.dense(), rows.clone());
-                prop_assert_eq!((&found.q, &found.mu), (&problem.q, &problem.mu));
-            }
+            let found = local(&write(&problem));
+            prop_assert_eq!(found.w.dense(), rows);
+            prop_assert_eq!((&found.q, &found.mu), (&problem.q, &problem.mu));
         }
 
         #[test]

@@ -18,7 +18,6 @@ use hyperstatic::{broken, forces, problem};
 use std::sync::Arc;
 use std::time::Instant;
 use stickslip::scene::Scene;
-use stickslip::scene::siconos::Storage;
 use stickslip::step::event::Outcome;
 use stickslip::step::stepper::Stepper;
 
@@ -70,7 +69,7 @@ fn bench(strategy: &str, which: &[usize], limit: f64) {
     for &k in which {
         let problem = problem(k);
         let set = [("settings.strategy".to_owned(), strategy.to_owned())];
-        let text = problem.write(Storage::Dense);
+        let text = problem.write();
         let scene = Scene::from_text("hyperstatic.dat", &text, &set).expect("a scene");
         let mut stepper = Stepper::new(Arc::new(scene.model));
         let from = Instant::now();

@@ -12,7 +12,7 @@ use stickslip::interface::family::{Family, families};
 use stickslip::interface::problem::InterfaceProblem;
 use stickslip::interface::uniqueness::{Inapplicable, Uniqueness, uniqueness};
 use stickslip::scene::Scene;
-use stickslip::scene::siconos::{Friction2d, Storage};
+use stickslip::scene::siconos::Friction2d;
 use stickslip::step::stepper::Stepper;
 
 /// A scene of this compliance, these motions without forces, and this friction at all contacts.
@@ -26,7 +26,7 @@ fn scene(w: &[&[f64]], q: &[f64], mu: f64, set: &[(&str, &str)]) -> Scene {
         .iter()
         .map(|(path, value)| ((*path).to_owned(), (*value).to_owned()))
         .collect();
-    Scene::from_text("given.dat", &problem.write(Storage::Dense), &set).unwrap()
+    Scene::from_text("given.dat", &problem.write(), &set).unwrap()
 }
 
 fn frozen(scene: Scene) -> InterfaceProblem {

@@ -1,7 +1,7 @@
 //! Interface problems of other programs: read from every form with the same answer, condensed right, refused with a place.
 
 use crate::common::{finished, run};
-use crate::siconos::{answer, assert_solved};
+use crate::siconos::{answer, assert_solved, in_blocks};
 use proptest::prelude::*;
 use std::fs;
 use std::path::Path;
@@ -11,7 +11,7 @@ use stickslip::linear::estimate::GIGABYTE;
 use stickslip::model::Mode;
 use stickslip::scene::Scene;
 use stickslip::scene::problems::market;
-use stickslip::scene::siconos::{Friction2d, Storage, read};
+use stickslip::scene::siconos::{Friction2d, read};
 use stickslip::scene::solver::any_solver;
 use stickslip_exchange::problem::{Local, Matrix};
 use stickslip_exchange::siconos::write;
@@ -88,8 +88,8 @@ fn files(folder: &TempDir, problem: &Friction2d) -> Vec<String> {
         fs::write(part, text).unwrap();
     }
     let mut files = vec![
-        put(folder, "p.dat", problem.write(Storage::Dense)),
-        put(folder, "b.dat", problem.write(Storage::Blocks)),
+        put(folder, "p.dat", problem.write()),
+        put(folder, "b.dat", in_blocks(&problem.local())),
         matrix.display().to_string(),
     ];
     if fclib::ready().is_ok() {
@@ -236,8 +236,8 @@ fn a_problem_in_space_is_the_same_from_every_file_and_obeys_the_laws() {
     let folder = folder();
     let local = in_space();
     let mut files = vec![
-        put(&folder, "p.dat", write(&local, Storage::Dense)),
-        put(&folder, "b.dat", write(&local, Storage::Blocks)),
+        put(&folder, "p.dat", write(&local)),
+        put(&folder, "b.dat", in_blocks(&local)),
         put(&folder, "p_W.mtx", matrix_market::write(&local.w, &[])),
     ];
     put(

@@ -2,6 +2,7 @@
 
 use crate::common::{Run, finished};
 use crate::packing::{global, local, natural_map};
+use crate::siconos::in_blocks;
 use std::fs;
 use stickslip::contact::table2::Rule;
 use stickslip::explain::{accuracy, report};
@@ -11,7 +12,6 @@ use stickslip::step::event::Outcome;
 use stickslip::step::stepper::Stepper;
 use stickslip_exchange::matrix_market;
 use stickslip_exchange::problem::{Global, Local, Matrix};
-use stickslip_exchange::siconos::{Storage, write};
 
 /// The problem as Matrix Market files.
 fn scene(problem: &Local) -> Scene {
@@ -154,7 +154,7 @@ fn many_contacts_are_read_alike_from_every_file() {
     let problem = local(7, 7, 0.3);
     assert!(problem.mu.len() > FEW);
     let from_market = scene(&problem);
-    let text = write(&problem, Storage::Blocks);
+    let text = in_blocks(&problem);
     let from_siconos = Scene::from_text("p.dat", &text, &[]).unwrap();
     assert_eq!(from_market.model.bodies, from_siconos.model.bodies);
     assert_eq!(from_market.model.loads, from_siconos.model.loads);
@@ -167,7 +167,7 @@ fn many_contacts_are_read_alike_from_every_file() {
 #[test]
 fn many_contacts_that_do_not_fit_are_refused_before_they_start() {
     let problem = local(24, 16, 0.4);
-    let text = write(&problem, Storage::Blocks);
+    let text = in_blocks(&problem);
     let set = |memory: &str| [("settings.memory".to_owned(), memory.to_owned())];
     assert!(Scene::from_text("p.dat", &text, &set("0.03")).is_ok());
     let error = Scene::from_text("p.dat", &text, &set("0.011")).unwrap_err();

@@ -8,7 +8,7 @@ use stickslip::contact::table2::Rule;
 use std::sync::Arc;
 use stickslip::model::Strategy;
 use stickslip::scene::Scene;
-use stickslip::scene::siconos::{Friction2d, Storage};
+use stickslip::scene::siconos::Friction2d;
 use stickslip::step::event::Failure;
 use stickslip::step::stepper::Stepper;
 use stickslip::strategy::{next_rung, rungs};
@@ -18,7 +18,7 @@ const TOLERANCE: f64 = 1e-9;
 
 fn scene(problem: &Friction2d, strategy: &str) -> Scene {
     let set = [("settings.strategy".to_owned(), strategy.to_owned())];
-    Scene::from_text("hyperstatic.dat", &problem.write(Storage::Dense), &set).unwrap()
+    Scene::from_text("hyperstatic.dat", &problem.write(), &set).unwrap()
 }
 
 /// The first twelve with 30 to 50 contacts. Gauss-Seidel need not come to an end where friction is strong; what it comes to is

@@ -4,6 +4,7 @@ use super::cards::{ANY, Card};
 use super::reader::Reader;
 use super::source::Done;
 use Pass::{Laws, Mesh, Model, Step};
+use std::sync::LazyLock;
 
 /// Treatment of a keyword.
 #[derive(Debug, Clone, Copy)]
@@ -50,17 +51,105 @@ const fn read(
     Read(note, Some(reading))
 }
 
-const OUTPUT: &str = "output is selected on the command line";
-const HEAT: &str = "it concerns the flow of heat, which is not computed";
-const COUPLED: &str =
-    "equations between nodes are not supported; give both bodies common nodes, or use *TIE";
-const OTHER: &str = "only *STATIC steps are supported";
-const INELASTIC: &str = "only isotropic, linear *ELASTIC materials are supported";
-const FRAMES: &str = "other coordinate systems are not supported; write x and y";
-const CHANGES: &str = "contact definitions must be the same in all steps";
-
 /// The known keywords, in alphabetical order.
-pub const KEYWORDS: &[(&str, Treatment)] = &[
+pub static KEYWORDS: LazyLock<Vec<(&str, Treatment)>> = LazyLock::new(|| {
+    let alike = ALIKE
+        .iter()
+        .flat_map(|(treatment, names)| names.iter().map(|name| (*name, *treatment)));
+    let mut all: Vec<(&str, Treatment)> = alike.chain(ONE_BY_ONE.iter().copied()).collect();
+    all.sort_unstable_by_key(|(name, _)| *name);
+    all
+});
+
+/// Keywords with a common reason.
+const ALIKE: &[(Treatment, &[&str])] = &[
+    (
+        Refused("only *STATIC steps are supported"),
+        &[
+            "BUCKLE",
+            "COUPLED TEMPERATURE-DISPLACEMENT",
+            "DYNAMIC",
+            "FREQUENCY",
+            "HEAT TRANSFER",
+            "MODAL DYNAMIC",
+            "STEADY STATE DYNAMICS",
+            "SUBSTRUCTURE GENERATE",
+            "UNCOUPLED TEMPERATURE-DISPLACEMENT",
+            "VISCO",
+        ],
+    ),
+    (
+        Ignored("it concerns the flow of heat, which is not computed"),
+        &[
+            "CFLUX",
+            "CONDUCTIVITY",
+            "DFLUX",
+            "FILM",
+            "GAP CONDUCTANCE",
+            "GAP HEAT GENERATION",
+            "RADIATE",
+            "SPECIFIC HEAT",
+        ],
+    ),
+    (
+        Refused("contact definitions must be the same in all steps"),
+        &["CHANGE FRICTION", "CHANGE SURFACE BEHAVIOR", "MODEL CHANGE"],
+    ),
+    (
+        Ignored("output is selected on the command line"),
+        &[
+            "CONTACT FILE",
+            "CONTACT OUTPUT",
+            "CONTACT PRINT",
+            "EL FILE",
+            "EL PRINT",
+            "ELEMENT OUTPUT",
+            "ENERGY FILE",
+            "ENERGY OUTPUT",
+            "MONITOR",
+            "NODE FILE",
+            "NODE OUTPUT",
+            "OUTPUT",
+            "PREPRINT",
+            "PRINT",
+            "SECTION PRINT",
+            "TIME POINTS",
+        ],
+    ),
+    (
+        Refused(
+            "equations between nodes are not supported; give both bodies common nodes, or use *TIE",
+        ),
+        &[
+            "COUPLING",
+            "CYCLIC SYMMETRY MODEL",
+            "DISTRIBUTING COUPLING",
+            "EQUATION",
+            "KINEMATIC",
+            "KINEMATIC COUPLING",
+            "MPC",
+        ],
+    ),
+    (
+        Refused("only isotropic, linear *ELASTIC materials are supported"),
+        &[
+            "CREEP",
+            "DEFORMATION PLASTICITY",
+            "DEPVAR",
+            "HYPERELASTIC",
+            "HYPERFOAM",
+            "PLASTIC",
+            "USER MATERIAL",
+        ],
+    ),
+    (
+        Refused("other coordinate systems are not supported; write x and y"),
+        &["DISTRIBUTION", "SYSTEM", "TRANSFORM"],
+    ),
+];
+
+/// The other keywords.
+const ONE_BY_ONE: &[(&str, Treatment)] = &[
     (
         "AMPLITUDE",
         read(
@@ -89,10 +178,6 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
             Reader::boundary,
         ),
     ),
-    ("BUCKLE", Refused(OTHER)),
-    ("CFLUX", Ignored(HEAT)),
-    ("CHANGE FRICTION", Refused(CHANGES)),
-    ("CHANGE SURFACE BEHAVIOR", Refused(CHANGES)),
     (
         "CLOAD",
         read(
@@ -102,7 +187,6 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
             Reader::force,
         ),
     ),
-    ("CONDUCTIVITY", Ignored(HEAT)),
     (
         "CONTACT CONTROLS",
         Ignored("this program solves contact differently"),
@@ -111,8 +195,6 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
         "CONTACT DAMPING",
         Refused("contact damping is not supported; leave it out"),
     ),
-    ("CONTACT FILE", Ignored(OUTPUT)),
-    ("CONTACT OUTPUT", Ignored(OUTPUT)),
     (
         "CONTACT PAIR",
         read(
@@ -122,29 +204,19 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
             Reader::pair,
         ),
     ),
-    ("CONTACT PRINT", Ignored(OUTPUT)),
     (
         "CONTROLS",
         Ignored("this program controls increments differently; see `stickslip help settings`"),
     ),
-    ("COUPLED TEMPERATURE-DISPLACEMENT", Refused(OTHER)),
-    ("COUPLING", Refused(COUPLED)),
-    ("CREEP", Refused(INELASTIC)),
-    ("CYCLIC SYMMETRY MODEL", Refused(COUPLED)),
     ("DAMPING", Ignored("it only affects *DYNAMIC steps")),
     (
         "DASHPOT",
         Refused("dashpots are not supported; only *STATIC steps are"),
     ),
-    ("DEFORMATION PLASTICITY", Refused(INELASTIC)),
     (
         "DENSITY",
         read("for GRAV in *DLOAD", Laws, &[], Reader::density),
     ),
-    ("DEPVAR", Refused(INELASTIC)),
-    ("DFLUX", Ignored(HEAT)),
-    ("DISTRIBUTING COUPLING", Refused(COUPLED)),
-    ("DISTRIBUTION", Refused(FRAMES)),
     (
         "DLOAD",
         read(
@@ -158,9 +230,6 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
         "DSLOAD",
         read("P", Step, &["OP", "AMPLITUDE"], Reader::surface_load),
     ),
-    ("DYNAMIC", Refused(OTHER)),
-    ("EL FILE", Ignored(OUTPUT)),
-    ("EL PRINT", Ignored(OUTPUT)),
     (
         "ELASTIC",
         read("isotropic", Laws, &["TYPE"], Reader::elastic),
@@ -174,7 +243,6 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
             Reader::elements,
         ),
     ),
-    ("ELEMENT OUTPUT", Ignored(OUTPUT)),
     (
         "ELSET",
         read(
@@ -188,9 +256,6 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
     ("END INSTANCE", Read("", None)),
     ("END PART", Read("", None)),
     ("END STEP", read("", Step, &[], Reader::end)),
-    ("ENERGY FILE", Ignored(OUTPUT)),
-    ("ENERGY OUTPUT", Ignored(OUTPUT)),
-    ("EQUATION", Refused(COUPLED)),
     (
         "EXPANSION",
         read(
@@ -200,8 +265,6 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
             Reader::expansion,
         ),
     ),
-    ("FILM", Ignored(HEAT)),
-    ("FREQUENCY", Refused(OTHER)),
     (
         "FRICTION",
         read(
@@ -215,12 +278,7 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
         "GAP",
         Refused("gap elements are not supported; use *CONTACT PAIR"),
     ),
-    ("GAP CONDUCTANCE", Ignored(HEAT)),
-    ("GAP HEAT GENERATION", Ignored(HEAT)),
     ("HEADING", read("as the title", Mesh, ANY, Reader::heading)),
-    ("HEAT TRANSFER", Refused(OTHER)),
-    ("HYPERELASTIC", Refused(INELASTIC)),
-    ("HYPERFOAM", Refused(INELASTIC)),
     (
         "INCLUDE",
         Read("files in the folder of the deck or below", None),
@@ -241,14 +299,8 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
             None,
         ),
     ),
-    ("KINEMATIC", Refused(COUPLED)),
-    ("KINEMATIC COUPLING", Refused(COUPLED)),
     ("MASS", Ignored("it only affects *DYNAMIC steps")),
     ("MATERIAL", read("", Laws, &["NAME"], Reader::material)),
-    ("MODAL DYNAMIC", Refused(OTHER)),
-    ("MODEL CHANGE", Refused(CHANGES)),
-    ("MONITOR", Ignored(OUTPUT)),
-    ("MPC", Refused(COUPLED)),
     (
         "NO ANALYSIS",
         Refused("it would disable the solve; leave it out"),
@@ -257,8 +309,6 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
         "NODE",
         read("in the plane z = 0", Mesh, &["NSET"], Reader::nodes),
     ),
-    ("NODE FILE", Ignored(OUTPUT)),
-    ("NODE OUTPUT", Ignored(OUTPUT)),
     (
         "NODE PRINT",
         read(
@@ -278,19 +328,14 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
         ),
     ),
     ("ORIENTATION", Ignored("materials are isotropic")),
-    ("OUTPUT", Ignored(OUTPUT)),
     ("PART", Read("", None)),
     ("PHYSICAL CONSTANTS", Ignored("it only concerns heat")),
-    ("PLASTIC", Refused(INELASTIC)),
     (
         "PRE-TENSION SECTION",
         Refused(
             "pre-tension sections couple nodes by an equation, which is not supported; displace an end by *BOUNDARY instead",
         ),
     ),
-    ("PREPRINT", Ignored(OUTPUT)),
-    ("PRINT", Ignored(OUTPUT)),
-    ("RADIATE", Ignored(HEAT)),
     ("RESTART", Ignored("use run's --snapshot to save states")),
     (
         "RIGID BODY",
@@ -302,7 +347,6 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
         "SECTION CONTROLS",
         Ignored("hourglass control is that of this program"),
     ),
-    ("SECTION PRINT", Ignored(OUTPUT)),
     (
         "SHELL SECTION",
         Refused("shells are three-dimensional; only plane elements are supported"),
@@ -316,7 +360,6 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
             Reader::solid_section,
         ),
     ),
-    ("SPECIFIC HEAT", Ignored(HEAT)),
     ("SPRING", Refused("springs are not supported")),
     (
         "STATIC",
@@ -327,7 +370,6 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
             Reader::time,
         ),
     ),
-    ("STEADY STATE DYNAMICS", Refused(OTHER)),
     (
         "STEP",
         read(
@@ -349,7 +391,6 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
         "SUBMODEL",
         Refused("submodels are not supported; prescribe displacements by *BOUNDARY"),
     ),
-    ("SUBSTRUCTURE GENERATE", Refused(OTHER)),
     (
         "SURFACE",
         read(
@@ -372,7 +413,6 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
         "SURFACE INTERACTION",
         read("", Laws, &["NAME"], Reader::interaction),
     ),
-    ("SYSTEM", Refused(FRAMES)),
     (
         "TEMPERATURE",
         read(
@@ -391,11 +431,6 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
             Reader::tie,
         ),
     ),
-    ("TIME POINTS", Ignored(OUTPUT)),
-    ("TRANSFORM", Refused(FRAMES)),
-    ("UNCOUPLED TEMPERATURE-DISPLACEMENT", Refused(OTHER)),
-    ("USER MATERIAL", Refused(INELASTIC)),
-    ("VISCO", Refused(OTHER)),
 ];
 
 /// Keywords, without spaces, that support, load or couple nodes: an outline without them is incomplete.

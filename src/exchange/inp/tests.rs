@@ -448,7 +448,7 @@ proptest! {
 
     #[test]
     fn no_sequence_of_cards_makes_the_reader_panic(
-        cards in prop::collection::vec((prop::sample::select(keywords::KEYWORDS), "[A-Z, =0-9.*-]{0,40}", "[A-Z0-9,. \n-]{0,60}"), 0..12),
+        cards in prop::collection::vec((prop::sample::select(keywords::KEYWORDS.clone()), "[A-Z, =0-9.*-]{0,40}", "[A-Z0-9,. \n-]{0,60}"), 0..12),
     ) {
         let lines = cards.iter().map(|((name, _), parameters, data)| format!("*{name},{parameters}\n{data}\n"));
         let _ = read("job.inp", &lines.collect::<String>(), &mut alone);

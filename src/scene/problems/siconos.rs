@@ -15,7 +15,6 @@ use stickslip_core::{Friction, Settings, Strategy};
 use stickslip_exchange::FormatError;
 use stickslip_exchange::problem::{self, Local};
 use stickslip_exchange::siconos;
-pub use stickslip_exchange::siconos::Storage;
 
 /// A plane friction problem.
 #[derive(Debug, Clone, PartialEq)]
@@ -175,8 +174,8 @@ impl Friction2d {
     }
 
     /// The text of the file.
-    pub fn write(&self, storage: Storage) -> String {
-        siconos::write(&self.local(), storage)
+    pub fn write(&self) -> String {
+        siconos::write(&self.local())
     }
 }
 

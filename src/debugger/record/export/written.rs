@@ -9,7 +9,7 @@ use stickslip_exchange::fclib;
 use stickslip_scene::format::notation;
 use stickslip_scene::problems::market;
 use stickslip_scene::shown as outside;
-use stickslip_scene::siconos::{Friction2d, Storage};
+use stickslip_scene::siconos::Friction2d;
 use stickslip_scene::{Scene, joined};
 
 /// The scene with all overrides, or its frozen problem if requested.
@@ -32,7 +32,7 @@ pub(super) fn ron(shown: &ExportState, stepper: &mut Stepper) -> Result<Vec<u8>,
 /// The frozen problem in Siconos format.
 pub(super) fn dat(shown: &ExportState, stepper: &mut Stepper) -> Result<Vec<u8>, Refusal> {
     let friction = condensed(shown, stepper)?;
-    Ok(friction.write(Storage::Dense).into_bytes())
+    Ok(friction.write().into_bytes())
 }
 
 /// The frozen problem as Matrix Market files.
