@@ -162,7 +162,7 @@ fn a_surface_that_most_of_its_nodes_are_behind_is_the_wrong_way_round_and_revers
     let state = Stepper::new(Arc::new(reversed.model.clone()))
         .state()
         .clone();
-    let advised = advice(&reversed.model, &state, &Failure::PathReversal);
+    let advised = advice(&reversed.model, &state, &Failure::PathReversal, None);
     let [Advice::Remedy(remedy)] = advised.as_slice() else {
         panic!("{advised:?}");
     };

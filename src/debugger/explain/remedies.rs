@@ -20,7 +20,6 @@ use stickslip_core::{
 };
 use stickslip_platform::clock::Instant;
 use stickslip_scene::Spec;
-use stickslip_scene::format::paths;
 
 /// Maximum number of minor iterations of a trial.
 pub const BUDGET: u32 = 400;
@@ -162,7 +161,7 @@ pub fn all(
         }
     }
     if let Status::Failed(failure) = &state.status {
-        for advice in advice(model, state, failure) {
+        for advice in advice(model, state, failure, spec) {
             if let Advice::Remedy(remedy) = advice
                 && (spec.is_some() || !matches!(remedy.how, RemedyInput::Restart(_)))
             {
@@ -197,19 +196,18 @@ pub fn offered(
         .collect()
 }
 
-/// Tries a remedy that changes the scene from its start; `None` if interrupted, or if the scene cannot be
-/// built.
+/// Tries a remedy that changes the scene from its start; `None` if interrupted, if the scene cannot be built, or if none of its
+/// meshes is generated and can be finer.
 fn attempt_restart(
     spec: &Spec,
     state: &State,
     (remedy, changes): (&Remedy, &[(String, String)]),
     stop: &dyn Fn() -> bool,
 ) -> Option<RemedyTrial> {
-    let mut spec = spec.clone();
-    for (path, value) in changes {
-        paths::set(&mut spec, path, value).ok()?;
+    let mut stepper = restart::changed(spec, state, changes)?;
+    if remedy.kind == RemedyKind::Finer && stepper.model().dofs.len() <= state.u.len() {
+        return None;
     }
-    let mut stepper = restart::changed(spec, state)?;
     let began = Instant::now();
     let run = restart::restart(&mut stepper, state, restart::BUDGET, stop)?;
     let count = |n: u64| u32::try_from(n).unwrap_or(u32::MAX);

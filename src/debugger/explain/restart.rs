@@ -3,9 +3,8 @@
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
-use stickslip_core::{
-    Failure, Intervention, Outcome, RunEnd, Settings, State, Status, Stepper, Until,
-};
+use stickslip_core::{Failure, Intervention, Outcome, RunEnd, State, Status, Stepper, Until};
+use stickslip_scene::format::paths;
 use stickslip_scene::{Scene, Spec};
 
 /// Maximum number of minor iterations in the trial of a changed scene.
@@ -24,22 +23,22 @@ pub struct Restart {
     pub failure: Option<Option<Failure>>,
 }
 
-/// The solver of a changed scene at its start, with the settings and friction of a failed state. `None` if the scene cannot
-/// be built.
-pub fn changed(spec: Spec, state: &State) -> Option<Stepper> {
+/// The solver of a scene at its start, with the settings and friction of a failed state and then these changes, by path. `None`
+/// if the scene cannot be built.
+pub fn changed(spec: &Spec, state: &State, changes: &[(String, String)]) -> Option<Stepper> {
+    let mut spec = Spec {
+        settings: state.controls.settings,
+        ..spec.clone()
+    };
+    for (path, value) in changes {
+        paths::set(&mut spec, path, value).ok()?;
+    }
     let own = spec.slaves.iter().filter_map(|group| group.friction);
     let by_area = own
         .chain([spec.friction])
         .any(|friction| friction.adhesion != 0.0);
     let model = Scene::from_spec("changed", spec).ok()?.model;
     let mut stepper = Stepper::new(Arc::new(model));
-    let own = stepper.model().settings;
-    let settings = Settings {
-        initial_gaps: own.initial_gaps,
-        adjust_gap: own.adjust_gap,
-        ..state.controls.settings
-    };
-    stepper.intervene(&Intervention::Settings(settings)).ok()?;
     // A friction change for all nodes applies to the new nodes, too. Node groups and cohesion by area keep the scene's
     // values.
     if !by_area
