@@ -23,6 +23,8 @@ use stickslip_scene::Spec;
 
 /// Maximum number of minor iterations of a trial.
 pub const BUDGET: u32 = 400;
+/// Maximum number of degrees of freedom of a finer mesh that is tried.
+const FINEST: usize = 50_000;
 /// Maximum number of iterations of a trial on an attached solver, which may be slow.
 const BUDGET_ATTACHED: u32 = 60;
 /// A node keeps its mode if the inequality is violated by less than this, relatively.
@@ -197,7 +199,7 @@ pub fn offered(
 }
 
 /// Tries a remedy that changes the scene from its start; `None` if interrupted, if the scene cannot be built, or if none of its
-/// meshes is generated and can be finer.
+/// meshes is generated and small enough to be finer.
 fn attempt_restart(
     spec: &Spec,
     state: &State,
@@ -205,7 +207,8 @@ fn attempt_restart(
     stop: &dyn Fn() -> bool,
 ) -> Option<RemedyTrial> {
     let mut stepper = restart::changed(spec, state, changes)?;
-    if remedy.kind == RemedyKind::Finer && stepper.model().dofs.len() <= state.u.len() {
+    let dofs = stepper.model().dofs.len();
+    if remedy.kind == RemedyKind::Finer && (dofs <= state.u.len() || dofs > FINEST) {
         return None;
     }
     let began = Instant::now();
