@@ -198,17 +198,20 @@ pub fn offered(
         .collect()
 }
 
-/// Tries a remedy that changes the scene from its start; `None` if interrupted, if the scene cannot be built, or if none of its
-/// meshes is generated and small enough to be finer.
+/// Tries a remedy that changes a scene, of this model, from its start; `None` if interrupted, if the scene cannot be built, or if
+/// its mesh cannot be finer: it is not generated, becomes too large, or names single nodes.
 fn attempt_restart(
-    spec: &Spec,
+    (model, spec): (&Model, &Spec),
     state: &State,
     (remedy, changes): (&Remedy, &[(String, String)]),
     stop: &dyn Fn() -> bool,
 ) -> Option<RemedyTrial> {
     let mut stepper = restart::changed(spec, state, changes)?;
     let dofs = stepper.model().dofs.len();
-    if remedy.kind == RemedyKind::Finer && (dofs <= state.u.len() || dofs > FINEST) {
+    let is_finer = dofs > state.u.len() && dofs <= FINEST;
+    if remedy.kind == RemedyKind::Finer
+        && !(is_finer && restart::is_refined(stepper.model(), model))
+    {
         return None;
     }
     let began = Instant::now();
@@ -241,7 +244,8 @@ pub fn attempt(
     stop: &dyn Fn() -> bool,
 ) -> Option<RemedyTrial> {
     if let RemedyInput::Restart(changes) = &remedy.how {
-        return attempt_restart(spec?, state, (remedy, changes), stop);
+        let model = solver.model().clone();
+        return attempt_restart((&model, spec?), state, (remedy, changes), stop);
     }
     let is_own = solver.stepper().is_some();
     let budget = if is_own { BUDGET } else { BUDGET_ATTACHED };

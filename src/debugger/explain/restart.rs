@@ -1,14 +1,21 @@
 //! Tries a changed scene from its start to the load of a failure, for changes that are impossible within a run,
 //! such as another mesh or material law.
 
+use std::collections::HashSet;
 use std::ops::ControlFlow;
 use std::sync::Arc;
-use stickslip_core::{Failure, Intervention, Outcome, RunEnd, State, Status, Stepper, Until};
+use stickslip_core::plane::distance;
+use stickslip_core::{
+    Failure, Intervention, Model, Outcome, RunEnd, State, Status, Stepper, Until,
+};
 use stickslip_scene::format::paths;
 use stickslip_scene::{Scene, Spec};
 
 /// Maximum number of minor iterations in the trial of a changed scene.
 pub(super) const BUDGET: u64 = 4000;
+
+/// Distance up to which two nodes are at the same place, relative to the scene's length.
+const SAME: f64 = 1e-6;
 
 /// Result of the trial.
 #[derive(Debug, Clone, PartialEq)]
@@ -53,6 +60,49 @@ pub fn changed(spec: &Spec, state: &State, changes: &[(String, String)]) -> Opti
         stepper.intervene(&Intervention::Friction(*first)).ok()?;
     }
     Some(stepper)
+}
+
+/// Whether a finer mesh has slave nodes, supports and loads wherever the other mesh has them. A name such as `beam.3` is that of
+/// another node on a finer mesh.
+pub fn is_refined(finer: &Model, mesh: &Model) -> bool {
+    let finer = roles(finer);
+    let near = SAME * mesh.length;
+    let is_kept = |(role, at): &(Role, [f64; 2])| {
+        let mut own = finer.iter().filter(|(own, _)| own == role);
+        own.any(|(_, own)| distance(*own, *at) <= near)
+    };
+    roles(mesh).iter().all(is_kept)
+}
+
+/// What a scene does with a node.
+#[derive(PartialEq)]
+enum Role {
+    Slave,
+    /// Restrains this component.
+    Restrained(usize),
+    /// Loads this component.
+    Loaded(usize),
+}
+
+/// The nodes that a scene does something with: what, and where in the undeformed mesh.
+fn roles(model: &Model) -> Vec<(Role, [f64; 2])> {
+    let mut all = Vec::new();
+    for contact in model.contacts.iter().filter(|c| c.weights.is_empty()) {
+        all.push((Role::Slave, model.nodes[contact.node].at));
+    }
+    let loaded: HashSet<usize> = model.loads.iter().map(|load| load.dof).collect();
+    let nodes = model.nodes.iter().zip(&model.dofs.first);
+    for ((node, &first), &count) in nodes.zip(&model.dofs.count) {
+        for component in 0..usize::from(count) {
+            if model.dofs.equation[first + component].is_none() {
+                all.push((Role::Restrained(component), node.at));
+            }
+            if loaded.contains(&(first + component)) {
+                all.push((Role::Loaded(component), node.at));
+            }
+        }
+    }
+    all
 }
 
 /// Runs a stepper to the load at which a state failed, in at most `budget` minor iterations. `None` if interrupted.
