@@ -1,5 +1,7 @@
 //! Checks of solves.
 
+use std::borrow::Borrow;
+
 /// Why a system could not be solved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SolveError {
@@ -23,11 +25,12 @@ pub(super) fn fill_probe(probe: &mut [f64]) {
     }
 }
 
-/// Largest magnitude of the entries; infinite if one is not finite.
-pub(super) fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0_f64, |m, v| {
-        if v.is_finite() {
-            m.max(v.abs())
+/// Largest magnitude of some numbers; infinite if one is not finite (`max` would ignore NaN).
+pub fn largest(values: impl IntoIterator<Item: Borrow<f64>>) -> f64 {
+    values.into_iter().fold(0.0_f64, |most, value| {
+        let value = value.borrow();
+        if value.is_finite() {
+            most.max(value.abs())
         } else {
             f64::INFINITY
         }

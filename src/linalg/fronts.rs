@@ -448,7 +448,7 @@ mod tests {
                     }
                 }
             }
-            let pattern = Pattern::new(n, a.keys().copied().collect());
+            let pattern = Pattern::new(n, a.keys().copied());
             let group = |i: usize| match i.checked_sub(first) {
                 Some(force) if apart => nodes + force,
                 Some(force) => force / 2,
@@ -521,7 +521,7 @@ mod tests {
         let apart = case.error(&mut fronts);
         assert!(apart < 1e-10, "{apart}");
         // Every group of the front is a single constraint.
-        let pattern = Pattern::new(4, (0..16).map(|k| (k / 4, k % 4)).collect());
+        let pattern = Pattern::new(4, (0..16).map(|k| (k / 4, k % 4)));
         let a = [
             [0.0, 0.0, 1.0, 0.0],
             [0.0, 0.0, 2.0, 1.0],
@@ -552,7 +552,7 @@ mod tests {
         let pairs = |i: usize, j: usize| i >= first && i - first == j;
         let has =
             |&(i, j): &(usize, usize)| (i < first) == (j < first) || pairs(i, j) || pairs(j, i);
-        let pattern = Pattern::new(n, places.filter(has).collect());
+        let pattern = Pattern::new(n, places.filter(has));
         let mut case = Case {
             values: pattern.iter().map(|(i, j)| value(i, j)).collect(),
             pattern,

@@ -26,7 +26,7 @@ mod supernodes;
 mod symmetric;
 mod tree;
 
-pub use check::SolveError;
+pub use check::{SolveError, largest};
 pub use dense::{DenseFactors, subtract_product};
 pub use lu::Factors;
 pub use pattern::Pattern;

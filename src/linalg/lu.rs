@@ -267,17 +267,11 @@ impl Factors {
     /// `residual`.
     fn backward_error(&mut self, b: &[f64], x: &[f64]) -> f64 {
         self.pattern.multiply(&self.values, x, &mut self.residual);
-        let (mut error, mut size) = (0.0_f64, 0.0_f64);
-        for ((b, product), scale) in b.iter().zip(&self.residual).zip(&self.row_scale) {
-            let apart = ((b - product) * scale).abs();
-            // `max` would ignore NaN.
-            error = if apart <= error { error } else { apart };
-            size = size.max((b * scale).abs());
-        }
-        for (x, scale) in x.iter().zip(&self.col_scale) {
-            size = size.max((x / scale).abs());
-        }
-        error / size.max(UNDERFLOW)
+        let rows = b.iter().zip(&self.residual).zip(&self.row_scale);
+        let error = largest(rows.map(|((b, product), scale)| (b - product) * scale));
+        let loads = largest(b.iter().zip(&self.row_scale).map(|(b, scale)| b * scale));
+        let motions = largest(x.iter().zip(&self.col_scale).map(|(x, scale)| x / scale));
+        error / loads.max(motions).max(UNDERFLOW)
     }
 
     fn apply_inverse(&mut self, x: &mut [f64]) {
@@ -449,7 +443,7 @@ mod tests {
     const ONES: [f64; 3] = [1.0; 3];
 
     fn dense(n: usize, a: &[f64]) -> (Arc<Pattern>, Vec<f64>) {
-        let pattern = Pattern::new(n, (0..n * n).map(|k| (k / n, k % n)).collect());
+        let pattern = Pattern::new(n, (0..n * n).map(|k| (k / n, k % n)));
         let values = pattern.iter().map(|(r, c)| a[r * n + c]).collect();
         (Arc::new(pattern), values)
     }

@@ -12,10 +12,10 @@ pub struct Pattern {
 }
 
 impl Pattern {
-    /// The pattern of an n by n matrix with these `(row, column)` entries, in any order, possibly repeated.
-    pub fn new(n: usize, entries: Vec<(usize, usize)>) -> Self {
-        let (starts, mut rows) = lists(n, || entries.iter().map(|&(row, col)| (col, row)));
-        drop(entries);
+    /// The pattern of an n by n matrix with these `(row, column)` entries, in any order, possibly repeated. They are iterated
+    /// twice.
+    pub fn new(n: usize, entries: impl Iterator<Item = (usize, usize)> + Clone) -> Self {
+        let (starts, mut rows) = lists(n, || entries.clone().map(|(row, col)| (col, row)));
         let mut col_ptr = Vec::with_capacity(n + 1);
         col_ptr.push(0);
         let mut end = 0;
@@ -87,31 +87,25 @@ impl Pattern {
         for (k, &unknown) in order.iter().enumerate() {
             place[unknown] = k;
         }
-        let entries = || self.iter().map(|(i, j)| (place[i], place[j]));
-        let lower = || entries().map(|(i, j)| (i.max(j), i.min(j)));
-        // Sorted by rows, then by columns, so that rows ascend in each column.
-        let rows = || lower().map(|(row, _)| row).zip(0..);
-        let (_, by_rows) = lists(self.n, rows);
-        let places: Vec<(usize, usize)> = lower().collect();
-        let columns = || by_rows.iter().map(|&entry| (places[entry].1, entry));
-        let (col_ptr, from) = lists(self.n, columns);
-        let pattern = Pattern {
-            n: self.n,
-            col_ptr,
-            row_idx: from.iter().map(|&entry| places[entry].0).collect(),
-        };
+        let entries = self.iter().map(|(i, j)| (place[i], place[j]));
+        let lower = entries.map(|(i, j)| (i.max(j), i.min(j)));
+        let pattern = Pattern::new(self.n, lower.clone());
+        let mut from = vec![0; self.entries()];
+        for (entry, (row, column)) in lower.enumerate() {
+            if let Some(slot) = pattern.slot(row, column) {
+                from[slot] = entry;
+            }
+        }
         (pattern, from)
     }
 
     /// The pattern of the transposed matrix.
     pub(super) fn transposed(&self) -> Pattern {
-        let rows = || self.iter().map(|(row, _)| row).zip(0..);
-        let (col_ptr, from) = lists(self.n, rows);
-        let columns: Vec<usize> = self.iter().map(|(_, column)| column).collect();
+        let (col_ptr, row_idx) = lists(self.n, || self.iter());
         Pattern {
             n: self.n,
             col_ptr,
-            row_idx: from.iter().map(|&entry| columns[entry]).collect(),
+            row_idx,
         }
     }
 
@@ -190,21 +184,21 @@ impl Pattern {
 }
 
 /// Groups values into lists by number, in order of appearance; also returns the start of each list.
-pub(super) fn lists<P: Iterator<Item = (usize, usize)>>(
+pub(super) fn lists<T: Copy + Default, P: Iterator<Item = (usize, T)>>(
     count: usize,
     pairs: impl Fn() -> P,
-) -> (Vec<usize>, Vec<usize>) {
+) -> (Vec<usize>, Vec<T>) {
     let mut starts = vec![0; count + 1];
     pairs().for_each(|(number, _)| starts[number + 1] += 1);
     for number in 0..count {
         starts[number + 1] += starts[number];
     }
     let mut next = starts.clone();
-    let mut values = vec![0; starts[count]];
-    for (number, value) in pairs() {
+    let mut values = vec![T::default(); starts[count]];
+    pairs().for_each(|(number, value)| {
         values[next[number]] = value;
         next[number] += 1;
-    }
+    });
     (starts, values)
 }
 
@@ -235,10 +229,10 @@ mod tests {
             (4, 5),
             (5, 5),
         ];
-        let pattern = Pattern::new(6, entries);
+        let pattern = Pattern::new(6, entries.into_iter());
         assert_eq!(pattern.blocks(), [0..3, 3..4, 4..6]);
         let (block, values) = pattern.block(4..6);
-        assert_eq!(block, Pattern::new(2, vec![(0, 0), (0, 1), (1, 1)]));
+        assert_eq!(block, Pattern::new(2, [(0, 0), (0, 1), (1, 1)].into_iter()));
         let all: Vec<_> = pattern.iter().collect();
         assert_eq!(all[values], [(4, 4), (4, 5), (5, 5)]);
     }
@@ -255,7 +249,7 @@ mod tests {
             (2, 2),
             (1, 0),
         ];
-        let pattern = Pattern::new(3, entries);
+        let pattern = Pattern::new(3, entries.into_iter());
         let all: Vec<_> = pattern.iter().collect();
         assert_eq!(all, [(0, 0), (1, 0), (2, 0), (0, 2), (2, 2)]);
         assert_eq!((pattern.entries(), pattern.slot(0, 2)), (5, Some(3)));

@@ -311,12 +311,11 @@ impl SymmetricFactors {
         }
         self.pattern
             .multiply_half(&self.values, &self.moved, &mut self.residual);
-        let mut worst = 0.0_f64;
-        for (&unknown, product) in self.order[..count].iter().zip(&self.residual) {
-            let apart = (product - b[unknown]).abs();
-            // `max` would ignore NaN.
-            worst = if apart <= worst { worst } else { apart };
+        let residual = &mut self.residual[..count];
+        for (product, &unknown) in residual.iter_mut().zip(&self.order) {
+            *product -= b[unknown];
         }
+        let worst = largest(residual);
         let size = largest(b).max(self.size * largest(x)).max(UNDERFLOW);
         if size.is_finite() && worst <= BACKWARD_LIMIT * size {
             Ok(())
@@ -413,7 +412,7 @@ mod tests {
             }
         }
         let places = (0..n).flat_map(|i| (i..n).map(move |j| (i, j)));
-        let entries = places.filter(|&place| a[place] != 0.0).collect();
+        let entries = places.filter(|&place| a[place] != 0.0);
         (Arc::new(Pattern::new(n, entries)), a)
     }
 
@@ -474,7 +473,7 @@ mod tests {
         let n = side * side;
         let steps = [0, 1, side - 1, side, side + 1, 2 * side];
         let entries = (0..n).flat_map(|i| steps.map(|step| (i, i + step)));
-        let entries = entries.filter(|&(_, j)| j < n).collect();
+        let entries = entries.filter(|&(_, j)| j < n);
         let pattern = Arc::new(Pattern::new(n, entries));
         let value = |(k, (i, j)): (usize, (usize, usize))| {
             let part = (k as f64).sin();
@@ -503,7 +502,7 @@ mod tests {
 
     #[test]
     fn growth_beyond_round_off_is_detected_when_factoring() {
-        let pattern = Arc::new(Pattern::new(2, vec![(0, 0), (0, 1), (1, 1)]));
+        let pattern = Arc::new(Pattern::new(2, [(0, 0), (0, 1), (1, 1)].into_iter()));
         let mut factors = SymmetricFactors::new(pattern, &[1], &[]).unwrap();
         assert!(
             factors
@@ -540,7 +539,7 @@ mod tests {
 
     #[test]
     fn a_vanishing_pivot_is_detected() {
-        let pattern = Arc::new(Pattern::new(2, vec![(0, 0), (0, 1), (1, 1)]));
+        let pattern = Arc::new(Pattern::new(2, [(0, 0), (0, 1), (1, 1)].into_iter()));
         let mut factors = SymmetricFactors::new(pattern, &[], &[]).unwrap();
         let told = factors
             .factor(&[1e-30, 1.0, 0.0], 0.0, &SequentialExecutor)

@@ -146,8 +146,9 @@ impl Folds {
             }
             sums[0][0] * sums[1][1] - sums[0][1] * sums[1][0]
         };
-        let greatest = self.0.iter().map(jacobian).fold(0.0, f64::max);
-        !self.0.iter().map(jacobian).all(|j| j > SMALLEST * greatest)
+        let jacobians: Vec<f64> = self.0.iter().map(jacobian).collect();
+        let greatest = jacobians.iter().copied().fold(0.0, f64::max);
+        !jacobians.iter().all(|&j| j > SMALLEST * greatest)
     }
 }
 

@@ -127,9 +127,9 @@ fn row(model: &Arc<Model>) {
 fn parts(model: &Model, executor: Arc<dyn Executor>) -> (f64, f64) {
     let (dofs, equations) = (&model.dofs, model.dofs.equations);
     let mut assembly = Assembly::with_executor(model, executor.clone());
-    let mut entries = assembly.entries(dofs);
-    entries.retain(|(row, column)| row <= column);
-    let pattern = Arc::new(Pattern::new(equations, entries));
+    let entries = assembly.entries(dofs);
+    let upper = entries.filter(|(row, column)| row <= column);
+    let pattern = Arc::new(Pattern::new(equations, upper));
     assembly.bind(dofs, &pattern, true);
     let masters = model
         .surfaces

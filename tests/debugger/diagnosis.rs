@@ -9,6 +9,7 @@ use stickslip::explain::diagnosis::{Cause, Diagnosis, words};
 use stickslip::explain::facts::Part;
 use stickslip::explain::influence::influences;
 use stickslip::explain::majors::limit_words;
+use stickslip::explain::restart;
 use stickslip::interface::problem::InterfaceProblem;
 use stickslip::interface::trials::Trials;
 use stickslip::linear::norms::Norms;
@@ -162,7 +163,7 @@ fn a_surface_that_most_of_its_nodes_are_behind_is_the_wrong_way_round_and_revers
     let state = Stepper::new(Arc::new(reversed.model.clone()))
         .state()
         .clone();
-    let advised = advice(&reversed.model, &state, &Failure::PathReversal);
+    let advised = advice(&reversed.model, &state, &Failure::PathReversal, None);
     let [Advice::Remedy(remedy)] = advised.as_slice() else {
         panic!("{advised:?}");
     };
@@ -220,4 +221,19 @@ fn residuals_that_do_not_fall_name_the_node_and_what_changes_instead_of_a_rate()
         panic!("one cause");
     };
     assert!(falls.contains("falls by a factor of 0.1 "), "{falls}");
+}
+
+/// On a finer mesh `s.3` is a node in the middle of the beam instead of its tip.
+#[test]
+fn a_mesh_whose_nodes_are_named_singly_is_not_tried_finer() {
+    let is_refined = |name: &str| {
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/findings/");
+        let [mesh, finer] = ["1", "2"].map(|refine| {
+            let file = format!("{folder}{name}.ron");
+            scene(&file, &[("refine", refine)]).model
+        });
+        restart::is_refined(&finer, &mesh)
+    };
+    assert!(is_refined("coarse-mesh-with-frozen-geometry"));
+    assert!(!is_refined("slides-to-the-end-of-its-surface"));
 }

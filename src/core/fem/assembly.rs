@@ -201,17 +201,16 @@ impl Assembly {
     }
 
     /// Entries `(row, column)`, in equations, of all elements; may contain duplicates.
-    pub fn entries(&self, dofs: &Dofs) -> Vec<(usize, usize)> {
-        let most = self.elements.iter().map(|p| p.dofs.len().pow(2)).sum();
-        let mut entries = Vec::with_capacity(most);
-        for placed in &self.elements {
+    pub fn entries<'a>(
+        &'a self,
+        dofs: &'a Dofs,
+    ) -> impl Iterator<Item = (usize, usize)> + Clone + 'a {
+        let of_elements = self.elements.iter().flat_map(|placed| {
             let equations = || placed.dofs.iter().filter_map(|&d| dofs.equation[d]);
-            entries.extend(equations().flat_map(|i| equations().map(move |j| (i, j))));
-        }
-        for matrix in &self.matrices {
-            entries.extend(matrix.entries(dofs));
-        }
-        entries
+            equations().flat_map(move |i| equations().map(move |j| (i, j)))
+        });
+        let matrices = self.matrices.iter();
+        of_elements.chain(matrices.flat_map(|matrix| matrix.entries(dofs)))
     }
 
     /// Looks up every entry in a pattern that contains them all, or, for a symmetric stiffness, those of the upper `half`.

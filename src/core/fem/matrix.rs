@@ -67,14 +67,17 @@ impl MatrixElement {
     }
 
     /// Row, in degrees of freedom, and range of entries of each row.
-    fn ranges(&self) -> impl Iterator<Item = (usize, std::ops::Range<usize>)> + '_ {
+    fn ranges(&self) -> impl Iterator<Item = (usize, std::ops::Range<usize>)> + Clone + '_ {
         let starts = std::iter::once(0).chain(self.rows.iter().map(|row| row.1));
         let rows = self.rows.iter().zip(starts);
         rows.map(|(&(dof, end), start)| (dof, start..end))
     }
 
     /// Entries `(row, column)` in equations.
-    pub fn entries<'a>(&'a self, dofs: &'a Dofs) -> impl Iterator<Item = (usize, usize)> + 'a {
+    pub fn entries<'a>(
+        &'a self,
+        dofs: &'a Dofs,
+    ) -> impl Iterator<Item = (usize, usize)> + Clone + 'a {
         self.ranges().flat_map(move |(dof, range)| {
             let row = dofs.equation[dof];
             let columns = self.columns[range].iter();

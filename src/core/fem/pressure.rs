@@ -86,7 +86,10 @@ impl Pressures {
     }
 
     /// Entries `(row, column)` of the tangent, in equations; may contain duplicates.
-    pub fn entries<'a>(&'a self, dofs: &'a Dofs) -> impl Iterator<Item = (usize, usize)> + 'a {
+    pub fn entries<'a>(
+        &'a self,
+        dofs: &'a Dofs,
+    ) -> impl Iterator<Item = (usize, usize)> + Clone + 'a {
         let faces = self.faces.iter().map(|face| &face.dofs);
         let following = self.expanding.iter().filter(|element| !element.small);
         let all = faces.chain(following.map(|element| &element.dofs));

@@ -98,12 +98,12 @@ impl Condensation {
     /// [`SolveError`] if it cannot be analysed.
     pub fn new(
         model: &Model,
-        mut entries: Vec<(usize, usize)>,
+        entries: impl Iterator<Item = (usize, usize)> + Clone,
         executor: Arc<dyn Executor>,
     ) -> Result<Self, SolveError> {
         let n = model.dofs.equations;
-        entries.retain(|(row, column)| row <= column);
-        let pattern = Arc::new(Pattern::new(n, entries));
+        let upper = entries.filter(|(row, column)| row <= column);
+        let pattern = Arc::new(Pattern::new(n, upper));
         let (way, equations) = match direct_equations(model) {
             Some(equations) => (CondensationPath::Direct, equations),
             None => (CondensationPath::Springs, interface_equations(model)),

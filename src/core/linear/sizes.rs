@@ -8,6 +8,7 @@
 //!   only accurate to a few times the loads: regardless of the residual, no digit of its contact forces is right.
 
 use crate::fem::pressure::Pressures;
+use crate::linalg::largest;
 use crate::model::Component;
 use crate::model::{Body, BodyKind, Factor, Form};
 use crate::plane::max_abs;
@@ -131,13 +132,11 @@ impl Sizes {
     /// Largest displacement; rotations are multiplied by the scene's length.
     pub fn largest_motion(&self, u: &[f64]) -> f64 {
         let motion = |(u, kind): (&f64, &BalancedQuantity)| match kind {
-            BalancedQuantity::Force => u.abs(),
-            BalancedQuantity::Moment => u.abs() * self.length,
+            BalancedQuantity::Force => *u,
+            BalancedQuantity::Moment => u * self.length,
             BalancedQuantity::Length => 0.0,
         };
-        // Not `max`, which ignores NaN.
-        let motions = u.iter().zip(&self.kind).map(motion);
-        motions.fold(0.0, |most, u| if u <= most { most } else { u })
+        largest(u.iter().zip(&self.kind).map(motion))
     }
 }
 

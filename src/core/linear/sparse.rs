@@ -14,7 +14,7 @@ use crate::contact::stick_point::pierced;
 use crate::contact::tracking::Ground;
 use crate::interface::blocks::Blocks;
 use crate::interface::rows;
-use crate::linalg::{DenseFactors, Factors, Pattern, SolveError};
+use crate::linalg::{DenseFactors, Factors, Pattern, SolveError, largest};
 use crate::linear::bodies::value;
 use crate::linear::source::SUSPICIOUS;
 use crate::linear::sparse_contacts::sparse_contacts;
@@ -215,7 +215,7 @@ impl SparseInterface {
                 }
             }
         }
-        let pattern = Arc::new(Pattern::new(size, entries));
+        let pattern = Arc::new(Pattern::new(size, entries.iter().copied()));
         let mut values = vec![0.0; pattern.entries()];
         for (column, unknown) in unknowns.iter().enumerate() {
             let [n, t] = unknown.direction;
@@ -487,10 +487,7 @@ impl Source for SparseInterface {
     }
 
     fn largest_motion(&self, u: &[f64]) -> f64 {
-        let nodes = &u[..self.first_force];
-        // Not `max`, which ignores NaN.
-        let larger = |most: f64, u: &f64| if u.abs() <= most { most } else { u.abs() };
-        nodes.iter().fold(0.0, larger)
+        largest(&u[..self.first_force])
     }
 
     fn moved(&self, u: &[f64], before: &[f64]) -> f64 {

@@ -424,8 +424,7 @@ impl System {
 
     fn analyse(&mut self, model: &Model) -> Result<(), SolveError> {
         let equations = model.dofs.equations;
-        let mut entries = self.assembly.entries(&model.dofs);
-        entries.extend(self.pressures.entries(&model.dofs));
+        let mut entries = Vec::new();
         for (s, interface) in self.interfaces.iter().enumerate() {
             let row = equations + 2 * s;
             let linked = || {
@@ -446,7 +445,9 @@ impl System {
             join_partners(&self.interfaces, &self.pairing, model, &mut entries);
         }
         let size = equations + 2 * self.interfaces.len();
-        let pattern = Arc::new(Pattern::new(size, entries));
+        let bodies = self.assembly.entries(&model.dofs);
+        let bodies = bodies.chain(self.pressures.entries(&model.dofs));
+        let pattern = Arc::new(Pattern::new(size, bodies.chain(entries.iter().copied())));
         self.whole = Some(Factors::in_groups(pattern, &self.groups(model), equations)?);
         Ok(())
     }

@@ -42,9 +42,9 @@ impl Tangent {
     /// Sets up the tangent of a model.
     pub fn new(model: &Model, system: &System) -> Self {
         let mut assembly = Assembly::new(model);
-        let mut entries = assembly.entries(&model.dofs);
-        entries.retain(|(row, column)| row <= column);
-        entries.extend((0..model.dofs.equations).map(|e| (e, e)));
+        let entries = assembly.entries(&model.dofs);
+        let upper = entries.filter(|(row, column)| row <= column);
+        let entries = upper.chain((0..model.dofs.equations).map(|e| (e, e)));
         let pattern = Arc::new(Pattern::new(model.dofs.equations, entries));
         assembly.bind(&model.dofs, &pattern, true);
         let mut lengths = vec![false; model.dofs.equations];

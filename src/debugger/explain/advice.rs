@@ -11,6 +11,7 @@ use super::remedy::{
 use super::surface_end::ending;
 use stickslip_core::model::{AtCycle, Geometry, InitialGaps, Jumps, ResidualMethod, SearchMode};
 use stickslip_core::{BoundUpdate, Failure, Mode, Model, Singular, State, Strategy};
+use stickslip_scene::Spec;
 use stickslip_scene::gaps::turned;
 
 /// A possible measure.
@@ -20,15 +21,11 @@ pub enum Advice {
     Remedy(Remedy),
     /// Done by the user, in the scene's file or the debugger.
     ByHand(&'static str),
-    /// A finer mesh, tried from the start if the mesh can be generated.
-    Finer,
 }
 
-/// The finer mesh in the list of untried remedies.
-pub const FINER: &str = "a finer mesh, with smaller kinks (refine=2)";
-
-/// What to do about a failure, in order of preference.
-pub fn advice(model: &Model, state: &State, failure: &Failure) -> Vec<Advice> {
+/// What to do about a failure, in order of preference; `spec` is the scene as written by its author, from which a finer mesh can
+/// be generated.
+pub fn advice(model: &Model, state: &State, failure: &Failure, spec: Option<&Spec>) -> Vec<Advice> {
     let reverse: Vec<Advice> = turned(model)
         .into_iter()
         .filter_map(|found| Remedy::from_kind(RemedyKind::Reverse(found.surface), model, state))
@@ -54,7 +51,8 @@ pub fn advice(model: &Model, state: &State, failure: &Failure) -> Vec<Advice> {
             | Failure::PathReversal
             | Failure::ZeroMeasure
     );
-    let finer = refines(failure).then_some(Advice::Finer);
+    let finer = spec.filter(|_| refines(failure));
+    let finer = finer.map(|spec| Advice::Remedy(Remedy::finer(spec)));
     let gaps = [InitialGaps::Ramp, InitialGaps::Adjust]
         .into_iter()
         .filter_map(|gaps| Remedy::from_kind(RemedyKind::Gaps(gaps), model, state))
@@ -83,7 +81,14 @@ pub fn advice(model: &Model, state: &State, failure: &Failure) -> Vec<Advice> {
 
 /// Whether a finer mesh can help against a failure.
 fn refines(failure: &Failure) -> bool {
-    matches!(failure, Failure::MajorCycle(_) | Failure::Refused(_))
+    matches!(
+        failure,
+        Failure::MajorCycle(_)
+            | Failure::MajorLimit { .. }
+            | Failure::Diverged { .. }
+            | Failure::Inverted(_)
+            | Failure::Refused(_)
+    )
 }
 
 /// What can be tried, in order of preference; those without effect are removed later.

@@ -12,7 +12,7 @@
 //! - [`attempt`]: repeats the failed attempt; [`majors`]: why its major iterations do not converge; [`rigid_motion`]:
 //!   unrestrained bodies; [`strain`]: solids outside the range of their law; [`load_limit_probe`]: the load that smaller
 //!   steps reach; [`surface_end`]: nodes behind the end of their surface; [`moves_away`]: a damped
-//!   motion that leaves the last equilibrium; [`mesh_probe`]: a trial on a finer mesh; [`restart`]: trials of a changed scene.
+//!   motion that leaves the last equilibrium; [`restart`]: trials of a changed scene.
 //! - [`touch`]: how far the forces depend on where nodes in new contact are held.
 //! - [`examination`]: the frozen problem of a state; [`page`]: the whole diagnosis, as the debugger shows it; [`headline`]: what
 //!   happened in one line; [`facts`]: the parts of the page; [`try_list`]: what can be done, with the outcome of each trial.
@@ -44,7 +44,6 @@ pub mod jumped;
 pub mod limit_load;
 pub mod load_limit_probe;
 pub mod majors;
-pub mod mesh_probe;
 pub mod model_facts;
 pub mod moves_away;
 pub mod names;

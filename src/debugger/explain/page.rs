@@ -4,7 +4,7 @@
 //! problem that is solved next. Slow parts (trials of remedies, the load that smaller steps reach) come last,
 //! so that the page grows while it is read.
 
-use super::advice::{Advice, FINER, FORCE_THIRD_MODE, advice};
+use super::advice::{Advice, FORCE_THIRD_MODE, advice};
 use super::attempt::Attempt;
 use super::diagnosis::undecided;
 use super::examination::{DONE, Examination, frozen, nothing};
@@ -17,9 +17,8 @@ use super::jumped::leads_away;
 use super::limit_load::{LoadEnd, finish_ladder, limit_load, of_strategy};
 use super::load_limit_probe::reach;
 use super::majors;
-use super::mesh_probe::{MeshProbe, finer};
 use super::names;
-use super::remedies::{self, RemedyTrial, TrialEnd, attempt};
+use super::remedies::{RemedyTrial, attempt};
 use super::remedy::{Remedy, RemedyInput, RemedyKind};
 use super::report::sound;
 use super::rigid_motion::loose;
@@ -29,7 +28,6 @@ use stickslip_core::interface::census::MOST;
 use stickslip_core::model::FinishedRun;
 use stickslip_core::{
     Body, BodyKind, Failure, InitialGaps, Model, Norms, NotFound, Singular, State, Status, Stepper,
-    counted,
 };
 use stickslip_scene::gaps::turned;
 use stickslip_scene::{Spec, sig2, sig4};
@@ -64,7 +62,7 @@ pub fn page(
     };
     let mut page = PageBuilder::from_state(stepper, state, failure, stop);
     tell(&page.shown("trying remedies …"));
-    page.pending = page.remedies(stepper.model(), state, failure);
+    page.pending = page.remedies(stepper.model(), state, (failure, spec));
     while !page.pending.is_empty() {
         let remedy = &page.pending[0].clone();
         tell(&page.shown(&format!("trying {} …", remedy.label)));
@@ -75,15 +73,6 @@ pub fn page(
             None => return None,
         }
         page.pending.remove(0);
-    }
-    if page.refines
-        && let Some(spec) = spec
-    {
-        tell(&page.shown("trying a finer mesh …"));
-        page.finer = finer(spec, state, stop);
-        if stop() {
-            return None;
-        }
     }
     tell(&page.shown("looking for a limit load …"));
     page.add_limit_load(stepper, state, failure, stop);
@@ -118,7 +107,7 @@ pub fn first_that_works(
     stop: &dyn Fn() -> bool,
 ) -> Option<TryLine> {
     let mut minors = 0;
-    for remedy in advised(stepper.model(), state, failure) {
+    for remedy in advised(stepper.model(), state, failure, Some(spec)) {
         let typed = matches!(remedy.how, RemedyInput::Set(..) | RemedyInput::Restart(_));
         if !typed || minors >= most || stop() {
             continue;
@@ -135,11 +124,11 @@ pub fn first_that_works(
 }
 
 /// The remedies for a failure that can be tried, in order of preference.
-fn advised(model: &Model, state: &State, failure: &Failure) -> Vec<Remedy> {
-    let pieces = advice(model, state, failure).into_iter();
+fn advised(model: &Model, state: &State, failure: &Failure, spec: Option<&Spec>) -> Vec<Remedy> {
+    let pieces = advice(model, state, failure, spec).into_iter();
     let remedies = pieces.filter_map(|piece| match piece {
         Advice::Remedy(remedy) => Some(remedy),
-        Advice::ByHand(_) | Advice::Finer => None,
+        Advice::ByHand(_) => None,
     });
     remedies.collect()
 }
@@ -288,9 +277,6 @@ struct PageBuilder {
     /// Remedies that are still to be tried, and the trials of the others.
     pending: Vec<Remedy>,
     trials: Vec<RemedyTrial>,
-    /// Whether a finer mesh can help.
-    refines: bool,
-    finer: Option<MeshProbe>,
     /// The examination of the frozen problem.
     found: Examination,
 }
@@ -326,11 +312,9 @@ impl PageBuilder {
             causes.skip(1).for_each(|fact| fact.part = Part::Details);
         }
         let model = stepper.model();
-        for piece in advice(model, state, failure) {
-            match piece {
-                Advice::ByHand(text) => page.by_hand.push(text),
-                Advice::Finer => page.refines = true,
-                Advice::Remedy(_) => {}
+        for piece in advice(model, state, failure, None) {
+            if let Advice::ByHand(text) = piece {
+                page.by_hand.push(text);
             }
         }
         page.facts
@@ -539,7 +523,12 @@ impl PageBuilder {
     }
 
     /// The remedies tried for the page: the consistent states, and those for this kind of failure.
-    fn remedies(&self, model: &Model, state: &State, failure: &Failure) -> Vec<Remedy> {
+    fn remedies(
+        &self,
+        model: &Model,
+        state: &State,
+        (failure, spec): (&Failure, Option<&Spec>),
+    ) -> Vec<Remedy> {
         let mut all = Remedy::answers(model, &self.found);
         all.truncate(if turned(model).is_empty() {
             MOST_STATES
@@ -547,13 +536,17 @@ impl PageBuilder {
             0
         });
         let certain = matches!(Remedy::law(model, state, failure), Some((_, true)));
-        let advised = advised(model, state, failure);
+        let advised = advised(model, state, failure, spec);
+        let (finer, advised): (Vec<Remedy>, Vec<Remedy>) = advised
+            .into_iter()
+            .partition(|remedy| remedy.kind == RemedyKind::Finer);
         let is_law = |remedy: &Remedy| remedy.kind == RemedyKind::Law;
         if certain {
             all.splice(0..0, advised.iter().filter(|r| is_law(r)).cloned());
         }
         all.extend(advised.into_iter().filter(|r| !is_law(r)));
         all.truncate(MOST_TRIED);
+        all.extend(finer);
         all
     }
 
@@ -602,11 +595,6 @@ impl PageBuilder {
         });
         let pending = self.pending.iter();
         lines.extend(pending.map(|remedy| TryLine::untried(remedy, seconds)));
-        match &self.finer {
-            Some(finer) => lines.push(finer_line(finer)),
-            None if self.refines => lines.push(TryLine::by_hand(FINER)),
-            None => {}
-        }
         // Without consistent modes no forced mode helps.
         let census = self.found.census.as_ref();
         let has_none = census.is_some_and(|census| census.exact && census.answers.is_empty());
@@ -615,34 +603,6 @@ impl PageBuilder {
         lines.extend(by_hand.map(|text| TryLine::by_hand(text)));
         try_list::sort(&mut lines);
         lines
-    }
-}
-
-/// The line of a finer mesh that was tried.
-fn finer_line(finer: &MeshProbe) -> TryLine {
-    let (outcome, end) = match &finer.run.failure {
-        None => (
-            TryOutcome::Works,
-            format!(
-                "tried from the start: passes, {}",
-                counted(finer.run.minors, "minor")
-            ),
-        ),
-        Some(Some(failure)) => {
-            let end = remedies::end_words(&TrialEnd::Failed(failure.clone()));
-            (TryOutcome::Fails, format!("tried: {end}"))
-        }
-        Some(None) => (
-            TryOutcome::Fails,
-            format!("tried: {} minor", finer.run.minors),
-        ),
-    };
-    TryLine {
-        label: "a finer mesh".into(),
-        typed: format!("--set refine={}", finer.refine),
-        outcome,
-        end,
-        trial: None,
     }
 }
 

@@ -20,10 +20,11 @@ use stickslip_core::{
 };
 use stickslip_platform::clock::Instant;
 use stickslip_scene::Spec;
-use stickslip_scene::format::paths;
 
 /// Maximum number of minor iterations of a trial.
 pub const BUDGET: u32 = 400;
+/// Maximum number of degrees of freedom of a finer mesh that is tried.
+const FINEST: usize = 50_000;
 /// Maximum number of iterations of a trial on an attached solver, which may be slow.
 const BUDGET_ATTACHED: u32 = 60;
 /// A node keeps its mode if the inequality is violated by less than this, relatively.
@@ -162,7 +163,7 @@ pub fn all(
         }
     }
     if let Status::Failed(failure) = &state.status {
-        for advice in advice(model, state, failure) {
+        for advice in advice(model, state, failure, spec) {
             if let Advice::Remedy(remedy) = advice
                 && (spec.is_some() || !matches!(remedy.how, RemedyInput::Restart(_)))
             {
@@ -197,19 +198,22 @@ pub fn offered(
         .collect()
 }
 
-/// Tries a remedy that changes the scene from its start; `None` if interrupted, or if the scene cannot be
-/// built.
+/// Tries a remedy that changes a scene, of this model, from its start; `None` if interrupted, if the scene cannot be built, or if
+/// its mesh cannot be finer: it is not generated, becomes too large, or names single nodes.
 fn attempt_restart(
-    spec: &Spec,
+    (model, spec): (&Model, &Spec),
     state: &State,
     (remedy, changes): (&Remedy, &[(String, String)]),
     stop: &dyn Fn() -> bool,
 ) -> Option<RemedyTrial> {
-    let mut spec = spec.clone();
-    for (path, value) in changes {
-        paths::set(&mut spec, path, value).ok()?;
+    let mut stepper = restart::changed(spec, state, changes)?;
+    let dofs = stepper.model().dofs.len();
+    let is_finer = dofs > state.u.len() && dofs <= FINEST;
+    if remedy.kind == RemedyKind::Finer
+        && !(is_finer && restart::is_refined(stepper.model(), model))
+    {
+        return None;
     }
-    let mut stepper = restart::changed(spec, state)?;
     let began = Instant::now();
     let run = restart::restart(&mut stepper, state, restart::BUDGET, stop)?;
     let count = |n: u64| u32::try_from(n).unwrap_or(u32::MAX);
@@ -240,7 +244,8 @@ pub fn attempt(
     stop: &dyn Fn() -> bool,
 ) -> Option<RemedyTrial> {
     if let RemedyInput::Restart(changes) = &remedy.how {
-        return attempt_restart(spec?, state, (remedy, changes), stop);
+        let model = solver.model().clone();
+        return attempt_restart((&model, spec?), state, (remedy, changes), stop);
     }
     let is_own = solver.stepper().is_some();
     let budget = if is_own { BUDGET } else { BUDGET_ATTACHED };

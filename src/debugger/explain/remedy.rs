@@ -45,6 +45,8 @@ pub enum RemedyKind {
     PastEnds(usize),
     /// Another treatment of increments that jump to another branch; tried from the start of the scene.
     Jumps(Jumps),
+    /// Every generated element divided in two; tried from the start of the scene.
+    Finer,
     /// A material law whose range contains the state of a solid; tried from the start of the scene.
     Law,
 }
@@ -205,7 +207,7 @@ impl Remedy {
             (spec.settings != settings).then(|| remedy(label, RemedyInput::Set(path, value), first))
         };
         match kind {
-            RemedyKind::Answer(_) | RemedyKind::Law | RemedyKind::Tuned => None,
+            RemedyKind::Answer(_) | RemedyKind::Finer | RemedyKind::Law | RemedyKind::Tuned => None,
             RemedyKind::Reverse(surface) => {
                 let name = &model.surfaces.get(surface)?.name;
                 let label = format!("reverse surface {name}");
@@ -288,6 +290,16 @@ impl Remedy {
                     most.to_string(),
                 )
             }
+        }
+    }
+
+    /// A scene with twice its refinement.
+    pub fn finer(spec: &Spec) -> Remedy {
+        Remedy {
+            kind: RemedyKind::Finer,
+            label: "a finer mesh".to_owned(),
+            how: restarted("refine", &(2 * spec.refine).to_string()),
+            first: Vec::new(),
         }
     }
 

@@ -1,15 +1,21 @@
 //! Tries a changed scene from its start to the load of a failure, for changes that are impossible within a run,
 //! such as another mesh or material law.
 
+use std::collections::HashSet;
 use std::ops::ControlFlow;
 use std::sync::Arc;
+use stickslip_core::plane::distance;
 use stickslip_core::{
-    Failure, Intervention, Outcome, RunEnd, Settings, State, Status, Stepper, Until,
+    Failure, Intervention, Model, Outcome, RunEnd, State, Status, Stepper, Until,
 };
+use stickslip_scene::format::paths;
 use stickslip_scene::{Scene, Spec};
 
 /// Maximum number of minor iterations in the trial of a changed scene.
 pub(super) const BUDGET: u64 = 4000;
+
+/// Distance up to which two nodes are at the same place, relative to the scene's length.
+const SAME: f64 = 1e-6;
 
 /// Result of the trial.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,22 +30,22 @@ pub struct Restart {
     pub failure: Option<Option<Failure>>,
 }
 
-/// The solver of a changed scene at its start, with the settings and friction of a failed state. `None` if the scene cannot
-/// be built.
-pub fn changed(spec: Spec, state: &State) -> Option<Stepper> {
+/// The solver of a scene at its start, with the settings and friction of a failed state and then these changes, by path. `None`
+/// if the scene cannot be built.
+pub fn changed(spec: &Spec, state: &State, changes: &[(String, String)]) -> Option<Stepper> {
+    let mut spec = Spec {
+        settings: state.controls.settings,
+        ..spec.clone()
+    };
+    for (path, value) in changes {
+        paths::set(&mut spec, path, value).ok()?;
+    }
     let own = spec.slaves.iter().filter_map(|group| group.friction);
     let by_area = own
         .chain([spec.friction])
         .any(|friction| friction.adhesion != 0.0);
     let model = Scene::from_spec("changed", spec).ok()?.model;
     let mut stepper = Stepper::new(Arc::new(model));
-    let own = stepper.model().settings;
-    let settings = Settings {
-        initial_gaps: own.initial_gaps,
-        adjust_gap: own.adjust_gap,
-        ..state.controls.settings
-    };
-    stepper.intervene(&Intervention::Settings(settings)).ok()?;
     // A friction change for all nodes applies to the new nodes, too. Node groups and cohesion by area keep the scene's
     // values.
     if !by_area
@@ -54,6 +60,49 @@ pub fn changed(spec: Spec, state: &State) -> Option<Stepper> {
         stepper.intervene(&Intervention::Friction(*first)).ok()?;
     }
     Some(stepper)
+}
+
+/// Whether a finer mesh has slave nodes, supports and loads wherever the other mesh has them. A name such as `beam.3` is that of
+/// another node on a finer mesh.
+pub fn is_refined(finer: &Model, mesh: &Model) -> bool {
+    let finer = roles(finer);
+    let near = SAME * mesh.length;
+    let is_kept = |(role, at): &(Role, [f64; 2])| {
+        let mut own = finer.iter().filter(|(own, _)| own == role);
+        own.any(|(_, own)| distance(*own, *at) <= near)
+    };
+    roles(mesh).iter().all(is_kept)
+}
+
+/// What a scene does with a node.
+#[derive(PartialEq)]
+enum Role {
+    Slave,
+    /// Restrains this component.
+    Restrained(usize),
+    /// Loads this component.
+    Loaded(usize),
+}
+
+/// The nodes that a scene does something with: what, and where in the undeformed mesh.
+fn roles(model: &Model) -> Vec<(Role, [f64; 2])> {
+    let mut all = Vec::new();
+    for contact in model.contacts.iter().filter(|c| c.weights.is_empty()) {
+        all.push((Role::Slave, model.nodes[contact.node].at));
+    }
+    let loaded: HashSet<usize> = model.loads.iter().map(|load| load.dof).collect();
+    let nodes = model.nodes.iter().zip(&model.dofs.first);
+    for ((node, &first), &count) in nodes.zip(&model.dofs.count) {
+        for component in 0..usize::from(count) {
+            if model.dofs.equation[first + component].is_none() {
+                all.push((Role::Restrained(component), node.at));
+            }
+            if loaded.contains(&(first + component)) {
+                all.push((Role::Loaded(component), node.at));
+            }
+        }
+    }
+    all
 }
 
 /// Runs a stepper to the load at which a state failed, in at most `budget` minor iterations. `None` if interrupted.

@@ -14,7 +14,8 @@ use stickslip_core::{
 };
 use stickslip_scene::{sig4, sig6};
 
-/// Maximum distance from the end in the last equilibrium, and minimum depth behind it, relative to the scene's length.
+/// Maximum distance from the end in the last equilibrium, minimum depth behind it, and distance from the end of a node that is at
+/// it, relative to the scene's length.
 const NEAR: f64 = 0.02;
 const DEEP: f64 = 1e-4;
 /// Maximum number of nodes tried, and of minor iterations of each trial.
@@ -34,13 +35,14 @@ struct NearEnd {
     is_behind: bool,
 }
 
-/// The surfaces behind whose end a slave node is in the last equilibrium, or at whose end it slides there and which it has left in
-/// the failed iterate.
+/// The surfaces behind whose end a slave node is in the last equilibrium, or at whose end it slides there: so close to it that a
+/// smaller increment does not help, or it has left the surface in the failed iterate.
 pub fn ending(model: &Model, state: &State) -> Vec<usize> {
     let leaves = |found: &NearEnd| {
         let [before, now] = [&state.start.nodes, &state.nodes].map(|nodes| &nodes[found.slave]);
         let spot = before.spot.filter(|_| before.mode == Mode::Sliding);
-        now.spot.is_none() && spot.is_some_and(|spot| spot.surface == found.surface)
+        let leaves = now.spot.is_none() || found.past > -DEEP * model.length;
+        leaves && spot.is_some_and(|spot| spot.surface == found.surface)
     };
     let mut found = near_ends(model, state);
     found.retain(|found| found.is_behind || leaves(found));
