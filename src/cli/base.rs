@@ -40,7 +40,7 @@ impl From<Exit> for ExitCode {
     }
 }
 
-/// Why a subcommand failed; all variants except `Again` are bad input or usage.
+/// Why a subcommand failed; all variants except `Again` and `Ended` are bad input or usage.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     #[error(transparent)]
@@ -58,9 +58,9 @@ pub enum Error {
     Again(String),
     #[error("standard output: {0}")]
     Output(io::Error),
-    /// The subcommand has said why it ends.
-    #[error("ended")]
-    Ended(Exit),
+    /// There is no result, for the reason in the text.
+    #[error("{1}")]
+    Ended(Exit, String),
 }
 
 /// A usage error with a formatted message.
@@ -81,10 +81,9 @@ impl From<RunError> for Error {
 }
 
 impl Error {
-    /// Reports why there is no result, which ends the subcommand.
+    /// Why a subcommand has no result for this scene.
     pub fn ended(exit: Exit, name: &str, why: impl Display) -> Error {
-        notify(&format!("{name}: {why}"));
-        Error::Ended(exit)
+        Error::Ended(exit, format!("{name}: {why}"))
     }
 
     /// Another error as one of usage.

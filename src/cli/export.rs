@@ -381,7 +381,7 @@ fn state(args: &Args, kind: &ExportKind, interrupt: &Interrupt) -> Result<Vec<Ve
         ..seen.shown(scene, &origin, (&state, event.as_ref()), &picture)
     };
     let made = kind.made(&shown, &mut stepper);
-    let made = made.ok_or(Error::Ended(Exit::Bad))?;
+    let made = made.ok_or_else(|| usage!("{}: a journal is not made from a state", scene.name))?;
     made.map_err(|why| Error::ended(Exit::Unconverged, &scene.name, why))
 }
 

@@ -200,13 +200,12 @@ pub fn main() -> ExitCode {
     };
     ended
         .unwrap_or_else(|error| {
-            let exit = match error {
-                base::Error::Ended(exit) => return exit,
+            notify(&error.to_string());
+            match error {
+                base::Error::Ended(exit, _) => exit,
                 base::Error::Again(_) => Exit::Again,
                 _ => Exit::Bad,
-            };
-            notify(&error.to_string());
-            exit
+            }
         })
         .into()
 }
