@@ -21,7 +21,7 @@
 //!
 //! - [`sweep`]: cells that are computed in parallel, stored and merged.
 //! - [`log`]: the file of results; [`sweep_input`]: what the results depend on; [`shard`]: which cells belong
-//!   to a shard.
+//!   to a shard; [`run_error`]: why there are no results.
 //!
 //! Work-precision charts:
 //!

@@ -255,8 +255,8 @@ proptest! {
             bytes[at] = byte;
         }
         let _ = read(&bytes);
-        bytes.truncate(place(cut, bytes.len()));
-        // A truncated file is always an error.
+        // A truncated file is always an error, unless only its last line feed is missing.
+        bytes.truncate(place(cut, bytes.trim_ascii_end().len()));
         prop_assert!(read(&bytes).is_err());
     }
 }
