@@ -321,15 +321,15 @@ fn both_residual_methods_and_both_t_max_end_in_the_same_state() {
 #[test]
 fn condensed_and_whole_system_take_the_same_steps() {
     for builtin in builtin::list() {
-        let set = [("history.increment", "0.1")];
-        let condensed = run(&scene(
-            builtin.name,
-            &[set[0], ("settings.solver", "condensed")],
-        ));
-        let whole = run(&scene(
-            builtin.name,
-            &[set[0], ("settings.solver", "augmented")],
-        ));
+        let solved = |solver| {
+            let set = [
+                ("history.increment", "0.1"),
+                ("settings.factor", "each"),
+                ("settings.solver", solver),
+            ];
+            run(&scene(builtin.name, &set))
+        };
+        let [condensed, whole] = ["condensed", "augmented"].map(solved);
         let name = builtin.name;
         assert_eq!(whole.accepted.len(), condensed.accepted.len(), "{name}");
         assert_eq!(

@@ -39,7 +39,8 @@ const ON_SOLID: &str = "(title: \"t\", nodes: [Line(id: \"b\", from: (0, 1.05), 
     monitors: [(name: \"y\", of: Displacement(node: \"b.end\", component: y)), (name: \"n\", of: Contact(component: y))])";
 
 fn solve(text: &str, solver: &str) -> Run {
-    let set = [("settings.solver".to_string(), solver.to_string())];
+    let set = [("settings.solver", solver), ("settings.factor", "each")];
+    let set = set.map(|(path, value)| (path.to_string(), value.to_string()));
     run(&Scene::from_text("scene", text, &set).unwrap_or_else(|e| panic!("{e}")))
 }
 

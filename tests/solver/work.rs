@@ -1,6 +1,6 @@
 //! What is assembled and factored, and what is not done twice.
 
-use crate::common::{run, scene};
+use crate::common::{finished, scene};
 use std::sync::Arc;
 use stickslip::model::Mode;
 use stickslip::step::event::Outcome;
@@ -151,7 +151,7 @@ fn old_factors_lead_to_the_same_answers_with_fewer_factorizations() {
                 .copied()
                 .chain([("settings.factor", factor)])
                 .collect();
-            run(&scene(name, &set))
+            finished(&scene(name, &set))
         };
         let [each, needed] = ["each", "needed"].map(with);
         assert!(each.failure.is_none() && needed.failure.is_none(), "{name}");
@@ -176,20 +176,39 @@ fn old_factors_lead_to_the_same_answers_with_fewer_factorizations() {
     }
 }
 
+/// Increments, minor iterations and factorizations of the blocks.
+fn blocks(set: &[(&str, &str)]) -> [u64; 3] {
+    let run = finished(&scene(BLOCKS, set));
+    let counts = [run.accepted.len(), run.steps].map(|count| count as u64);
+    [counts[0], counts[1], run.stepper.work().factorizations]
+}
+
 #[test]
-fn solids_of_many_equations_keep_old_factors_and_small_ones_do_not() {
-    let factorizations = |refine, factor| {
-        let set = [
-            ("refine", refine),
-            ("settings.factor", factor),
-            ("history.increment", "0.5"),
-        ];
-        let run = run(&scene(BLOCKS, &set));
-        assert_eq!(run.failure, None, "{refine} {factor}");
-        run.stepper.work().factorizations
+fn condensed_solids_keep_old_factors_and_augmented_ones_do_not() {
+    let factorizations = |solver, factor| {
+        let [_, _, done] = blocks(&[("settings.solver", solver), ("settings.factor", factor)]);
+        done
     };
-    assert!(2 * factorizations("4", "auto") < factorizations("4", "each"));
-    assert_eq!(factorizations("2", "auto"), factorizations("2", "each"));
+    assert!(2 * factorizations("condensed", "auto") < factorizations("condensed", "each"));
+    let augmented = ["auto", "each"].map(|factor| factorizations("augmented", factor));
+    assert_eq!(augmented[0], augmented[1]);
+}
+
+#[test]
+fn an_increment_starts_with_the_factors_of_the_one_before_and_is_factored_once() {
+    let [increments, _, factorizations] = blocks(&[("settings.factor", "needed")]);
+    assert!(
+        factorizations <= increments,
+        "{factorizations} in {increments} increments"
+    );
+}
+
+#[test]
+fn a_constant_stiffness_is_factored_once_and_needs_no_more_iterations() {
+    let small = |factor| blocks(&[("materials.m.update", "small"), ("settings.factor", factor)]);
+    let [kept, anew] = ["auto", "each"].map(small);
+    assert_eq!(kept[..2], anew[..2]);
+    assert_eq!(kept[2], 1);
 }
 
 #[test]

@@ -39,6 +39,7 @@ const CASES: [Case; 14] = [
         set: &[
             ("friction.angle", "5"),
             ("history.increment", "0.5"),
+            ("settings.factor", "each"),
             ("settings.strategy", "table2"),
         ],
         is_meant: |failure| matches!(failure, Failure::MajorCycle(_)),

@@ -358,7 +358,9 @@ impl Assembly {
     /// Forces at the equations due to `step` of the degrees of freedom without an equation, as in [`Assembly::assemble`].
     pub fn couple(&mut self, dofs: &Dofs, moved: AssemblyMotion<'_>, coupling: &mut [f64]) {
         coupling.fill(0.0);
-        for placed in self.elements.iter().filter(|p| p.held) {
+        let moves = |dof: &usize| moved.step[*dof] != 0.0;
+        let held = self.elements.iter().filter(|p| p.held);
+        for placed in held.filter(|p| p.dofs.iter().any(moves)) {
             let room = &mut self.room;
             room.compute(placed, &moved, |past, u, force, tangent| {
                 tangent.fill(0.0);

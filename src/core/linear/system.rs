@@ -260,7 +260,7 @@ impl System {
         if !self.stands {
             self.assemble(model, &LinearisationPoint { u: about, ..*at });
             self.taken.clear();
-            if model.keeps_factors(at.chosen.factor) {
+            if model.keeps_factors(at.chosen.factor, self.condenses(at.chosen)) {
                 self.taken.extend_from_slice(about);
                 self.remembered.clear();
                 self.remembered.extend_from_slice(at.accepted.history);

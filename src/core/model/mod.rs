@@ -37,9 +37,6 @@ pub use settings::{
     ResidualMethod, SearchMode, Settings, SlipCount, Sticking, Strategy, TieRule, Touch,
 };
 
-/// Equations from which on [`Refactor::Auto`] keeps old factors.
-const MANY_EQUATIONS: usize = 4000;
-
 /// A checked scene.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Model {
@@ -327,10 +324,23 @@ impl Model {
         self.bodies.iter().any(|body| body.solid().is_some())
     }
 
-    /// Whether old factors are kept where they help, with this choice of when to factor.
-    pub fn keeps_factors(&self, chosen: Refactor) -> bool {
+    /// Whether any body is a beam.
+    pub fn has_beams(&self) -> bool {
+        let beam = |body: &Body| matches!(body.kind, BodyKind::Beam(_));
+        self.bodies.iter().any(beam)
+    }
+
+    /// Whether no body's stiffness depends on its displacements.
+    pub fn has_constant_stiffness(&self) -> bool {
+        let constant = |body: &Body| body.is_small() || matches!(body.kind, BodyKind::Linear(_));
+        self.bodies.iter().all(constant)
+    }
+
+    /// Whether old factors are kept where they help, with this choice of when to factor. The stiffness of a beam rotates with it,
+    /// and in the augmented system most of the work belongs to the interface and is done again in any case.
+    pub fn keeps_factors(&self, chosen: Refactor, condensed: bool) -> bool {
         match chosen {
-            Refactor::Auto => self.has_solids() && self.dofs.equations >= MANY_EQUATIONS,
+            Refactor::Auto => condensed && self.has_solids() && !self.has_beams(),
             Refactor::Each => false,
             Refactor::Needed => true,
         }

@@ -229,14 +229,18 @@ documented! {
 documented! {
     /// How often the bodies' stiffness is taken and factored.
     pub choice Refactor {
-        /// `needed` if the scene has solids and at least 4,000 equations, where it mostly saves time (page `speed`); else `each`.
+        /// `needed` if the scene has solids and no beams and is solved `condensed`, where it mostly saves time (page `speed`); else
+        /// `each`.
         #[default]
         Auto,
         /// In every major iteration, as in the paper.
         Each,
-        /// In the first major iteration of an increment, and whenever the out-of-balance force or the displacement correction has
-        /// fallen by less than a factor of ten. The out-of-balance force and the contact geometry are always current, so the
-        /// result is the same within the tolerance; there are more major iterations, but each costs less. Acts like `each` with
+        /// Only where the old factors are too poor: after a major iteration that left more than a tenth of the out-of-balance
+        /// force or of the displacement correction, and after the first one of an increment, which has the factors of the
+        /// increment before, if one more would not be enough. From the eighth major iteration on, and if elements have a memory
+        /// (`update: updated`) at the start of an increment, it is always computed. The out-of-balance force and the contact
+        /// geometry are always current, so the result is the same within the tolerance; there are more major iterations, but
+        /// each costs less. With `update: small` the stiffness is constant, and is factored once. Acts like `each` with
         /// `history.control: arc`, in damped motions and under a following pressure.
         Needed,
     }

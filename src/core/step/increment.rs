@@ -122,8 +122,10 @@ impl Iterate {
     }
 
     fn next_increment(&mut self) {
-        // The next increment starts with the stiffness at its own start.
-        let taken_here = self.drop_factors();
+        // The next increment starts with the stiffness at its own start, or with the last factors.
+        let carries = self.keeps_factors() && self.state.start.history.is_empty();
+        let stands = carries || self.drop_factors();
+        let factored = self.state.major.factored.take();
         let next = &mut self.state.next;
         (next.increment, next.attempt) = (next.increment + 1, 1);
         let helped = self
@@ -145,6 +147,7 @@ impl Iterate {
             self.state.recovery.cuts.clear();
         }
         self.state.begin();
-        self.linearised = self.linearised && taken_here && self.source.aim(&self.state.at());
+        self.state.major.factored = factored;
+        self.linearised = self.linearised && stands && self.source.aim(&self.state.at());
     }
 }

@@ -19,7 +19,8 @@ const STILL: f64 = 1e-8;
 const NEAR: f64 = 1e-10;
 /// Fraction of the out-of-balance force that a major iteration with old factors may leave before the factors are renewed.
 const ENOUGH: f64 = 0.1;
-/// First major iteration from which an inverted element is refused: earlier iterations may overshoot and recover.
+/// First major iteration from which an inverted element is refused, and the stiffness is always the current one: earlier
+/// iterations may overshoot and recover.
 const OVERSHOOT: u32 = 8;
 /// An increment along the path fails after this multiple of the major iterations that keep its size.
 const LOST: u32 = 2;
@@ -30,7 +31,8 @@ impl Stepper {
     pub(super) fn end_major(&mut self, settled: bool) -> Outcome {
         let held = self.now.hold(&self.event.nodes);
         // The correction of new factors measures what the previous ones left.
-        let fresh = self.now.state.major.factored.is_none();
+        let constant = self.now.model.has_constant_stiffness();
+        let fresh = constant || self.now.state.major.factored.is_none();
         let before = self.now.state.major.correction;
         let asked = if self.now.keeps_factors() {
             self.now.source.required_force()
@@ -65,7 +67,8 @@ impl Stepper {
         let settings = self.now.state.controls.settings;
         let size = self.now.source.largest_motion(&self.now.state.u);
         let bounded = after.relative.is_finite() && size < DIVERGED * self.now.model.length;
-        let balanced = self.now.state.is_balanced(&after) && self.now.is_near(before);
+        let exact = self.now.state.is_balanced(&after);
+        let balanced = exact && (fresh || self.now.is_near(before));
         let braked = self.now.state.recovery.brake.is_some();
         let most = self.now.most_majors(braked);
         let at_limit = self.now.state.next.major.is_multiple_of(most);
@@ -86,8 +89,12 @@ impl Stepper {
         {
             return self.refuse_inverted(point);
         }
-        self.now
-            .renew_factors(asked, if fresh { 0.0 } else { before }, &after);
+        let carried = !fresh && !exact && self.now.state.next.major == 1;
+        let before = if fresh { 0.0 } else { before };
+        let slow = leaves_much(asked, before, &after);
+        if !constant && (slow || carried && self.now.needs_more(asked, &after)) {
+            self.now.renew_factors();
+        }
         self.now.state.next_major();
         if !bounded {
             return self.fail(Failure::Diverged {
@@ -117,17 +124,20 @@ impl Stepper {
 
 impl Iterate {
     /// Whether the settings keep old factors where they help: under load control, without damping.
-    fn keeps_factors(&self) -> bool {
+    pub(super) fn keeps_factors(&self) -> bool {
         let state = &self.state;
         let loaded = state.way.is_none() && state.recovery.motion.is_none();
         // The stiffness of a pressure that follows its faces changes with the load.
         let dead = self.model.has_dead_loads();
-        loaded && dead && self.model.keeps_factors(state.controls.settings.factor)
+        let settings = &state.controls.settings;
+        let condensed = self.source.condenses(settings);
+        loaded && dead && self.model.keeps_factors(settings.factor, condensed)
     }
 
     /// Reuses the current stiffness in the next major iteration, if the settings allow it.
     fn keep_factors(&mut self) {
-        if !self.keeps_factors() {
+        let late = self.state.next.major >= OVERSHOOT && !self.model.has_constant_stiffness();
+        if late || !self.keeps_factors() {
             self.drop_factors();
         } else if self.state.major.factored.is_none() {
             let mut about = self.room.take().unwrap_or_default();
@@ -152,7 +162,7 @@ impl Iterate {
     /// last correction to the one `before` does.
     fn is_near(&self, before: f64) -> bool {
         let (state, last) = (&self.state, self.state.major.correction);
-        if state.major.factored.is_none() || last == 0.0 {
+        if last == 0.0 {
             return true;
         }
         // Slow convergence shows late in this ratio.
@@ -162,12 +172,15 @@ impl Iterate {
         left <= (state.controls.settings.tolerance * moved).max(NEAR)
     }
 
-    /// Has the stiffness recomputed if the current one has left more than [`ENOUGH`] of the out-of-balance force, or of the last
-    /// correction: the next major iteration would leave as much.
-    fn renew_factors(&mut self, asked: f64, before: f64, after: &Norms) {
-        let slow = before > 0.0 && after.correction > ENOUGH * before;
-        let little = slow || after.relative > ENOUGH * asked;
-        if little && !self.drop_factors() {
+    /// Whether more than one further major iteration is needed if it leaves as much as this one.
+    fn needs_more(&self, asked: f64, after: &Norms) -> bool {
+        let tolerance = self.state.controls.settings.tolerance;
+        after.relative * after.relative > tolerance.max(after.limit) * asked
+    }
+
+    /// Has the stiffness recomputed at the current displacements.
+    fn renew_factors(&mut self) {
+        if !self.drop_factors() {
             (self.linearised, self.measured) = (false, false);
         }
     }
@@ -290,6 +303,13 @@ impl State {
         self.next.major += 1;
         self.next.minor = 1;
     }
+}
+
+/// Whether a major iteration left more than [`ENOUGH`] of the out-of-balance force `asked` of it, or of the correction `before`:
+/// the next one with the same factors would leave as much.
+fn leaves_much(asked: f64, before: f64, after: &Norms) -> bool {
+    let slow = before > 0.0 && after.correction > ENOUGH * before;
+    slow || after.relative > ENOUGH * asked
 }
 
 /// Marks the records of contacts that were held in a corner in the last minor iteration and now slide.
