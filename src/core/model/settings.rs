@@ -237,11 +237,11 @@ documented! {
         Each,
         /// Only where the old factors are too poor: after a major iteration that left more than a tenth of the out-of-balance
         /// force or of the displacement correction, and after the first one of an increment, which has the factors of the
-        /// increment before, if one more would not be enough. From the eighth major iteration on, and if elements have a memory
-        /// (`update: updated`) at the start of an increment, it is always computed. The out-of-balance force and the contact
-        /// geometry are always current, so the result is the same within the tolerance; there are more major iterations, but
-        /// each costs less. With `update: small` the stiffness is constant, and is factored once. Acts like `each` with
-        /// `history.control: arc`, in damped motions and under a following pressure.
+        /// increment before, if one more would not be enough. In a hard increment (from the eighth major iteration or the second
+        /// attempt on), and at the start of one if elements have a memory (`update: updated`), it is always computed. The
+        /// out-of-balance force and the contact geometry are always current, so the result is the same within the tolerance;
+        /// there are more major iterations, but each costs less. With `update: small` the stiffness is constant, and is factored
+        /// once. Acts like `each` with `history.control: arc`, in damped motions and under a following pressure.
         Needed,
     }
 }

@@ -134,10 +134,12 @@ impl Iterate {
         loaded && dead && self.model.keeps_factors(settings.factor, condensed)
     }
 
-    /// Reuses the current stiffness in the next major iteration, if the settings allow it.
+    /// Reuses the current stiffness in the next major iteration, if the settings allow it and the increment is not a hard one.
     fn keep_factors(&mut self) {
-        let late = self.state.next.major >= OVERSHOOT && !self.model.has_constant_stiffness();
-        if late || !self.keeps_factors() {
+        let next = &self.state.next;
+        let hard = next.major >= OVERSHOOT || next.attempt > 1;
+        let suits = !hard || self.model.has_constant_stiffness();
+        if !suits || !self.keeps_factors() {
             self.drop_factors();
         } else if self.state.major.factored.is_none() {
             let mut about = self.room.take().unwrap_or_default();
