@@ -91,8 +91,9 @@ impl Stepper {
         }
         let carried = !fresh && !exact && self.now.state.next.major == 1;
         let before = if fresh { 0.0 } else { before };
-        let slow = leaves_much(asked, before, &after);
-        if !constant && (slow || carried && self.now.needs_more(asked, &after)) {
+        let poor = leaves_much(asked, before, &after)
+            || carried && needs_more(asked, settings.tolerance, &after);
+        if poor && !constant {
             self.now.renew_factors();
         }
         self.now.state.next_major();
@@ -172,12 +173,6 @@ impl Iterate {
         let left = last * ratio / (1.0 - ratio);
         let moved = self.source.moved(&state.u, &state.start.u) / self.model.length;
         left <= (state.controls.settings.tolerance * moved).max(NEAR)
-    }
-
-    /// Whether more than one further major iteration is needed if it leaves as much as this one.
-    fn needs_more(&self, asked: f64, after: &Norms) -> bool {
-        let tolerance = self.state.controls.settings.tolerance;
-        after.relative * after.relative > tolerance.max(after.limit) * asked
     }
 
     /// Has the stiffness recomputed at the current displacements.
@@ -312,6 +307,11 @@ impl State {
 fn leaves_much(asked: f64, before: f64, after: &Norms) -> bool {
     let slow = before > 0.0 && after.correction > ENOUGH * before;
     slow || after.relative > ENOUGH * asked
+}
+
+/// Whether more than one further major iteration is needed if it leaves as much as this one.
+fn needs_more(asked: f64, tolerance: f64, after: &Norms) -> bool {
+    after.relative * after.relative > tolerance.max(after.limit) * asked
 }
 
 /// Marks the records of contacts that were held in a corner in the last minor iteration and now slide.
