@@ -51,7 +51,42 @@ pub fn distance_to_segment(point: [f64; 2], a: [f64; 2], b: [f64; 2]) -> f64 {
     length(minus(to, along.map(|x| part * x)))
 }
 
+/// The distance of a point from a closed outline with its inside on the left, if the point is inside; otherwise 0.
+pub fn depth_inside(outline: &[[[f64; 2]; 2]], point: [f64; 2]) -> f64 {
+    let turn = |&[a, b]: &[[f64; 2]; 2]| {
+        let side = cross(minus(b, a), minus(point, a));
+        match (a[1] <= point[1], b[1] <= point[1]) {
+            (true, false) if side > 0.0 => 1,
+            (false, true) if side < 0.0 => -1,
+            _ => 0,
+        }
+    };
+    if outline.iter().map(turn).sum::<i32>() == 0 {
+        return 0.0;
+    }
+    let distances = outline
+        .iter()
+        .map(|[a, b]| distance_to_segment(point, *a, *b));
+    distances.fold(f64::INFINITY, f64::min)
+}
+
 /// The distance of two points.
 pub fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn depth_is_the_distance_from_the_outline_and_zero_outside() {
+        let corners = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]];
+        let square: Vec<_> = (0..4).map(|k| [corners[k], corners[(k + 1) % 4]]).collect();
+        assert_eq!(depth_inside(&square, [1.0, 0.25]), 0.25);
+        assert_eq!(depth_inside(&square, [1.9, 0.5]), 0.10000000000000009);
+        for outside in [[-0.1, 0.5], [1.0, 1.2], [3.0, 0.0], [1.0, -0.3]] {
+            assert_eq!(depth_inside(&square, outside), 0.0);
+        }
+    }
 }

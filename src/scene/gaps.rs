@@ -10,7 +10,7 @@ use std::collections::HashSet;
 use stickslip_core::contact::facing::{MOST as MOST_SURFACES, faced};
 use stickslip_core::contact::projection::{project, projection_at};
 use stickslip_core::fem::lagrange;
-use stickslip_core::plane::{distance_to_segment, dot, range};
+use stickslip_core::plane::{depth_inside, dot, range};
 use stickslip_core::{
     Body, BodyKind, Contact, InitialGaps, Model, Node, Surface, SurfaceElement, SurfacePoint,
 };
@@ -233,9 +233,8 @@ fn outward(model: &Model) -> Vec<Option<[f64; 2]>> {
 /// Bodies without a support, prescribed displacement or contact.
 fn unheld(model: &Model) -> Vec<String> {
     let held = |node: usize| {
-        let first = model.dofs.first[node];
-        (first..first + usize::from(model.dofs.count[node]))
-            .any(|dof| model.dofs.equation[dof].is_none())
+        let own = model.dofs.of_node(node);
+        model.dofs.equation[own].iter().any(Option::is_none)
     };
     let mut bodies_at = vec![0_usize; model.nodes.len()];
     for &node in model.bodies.iter().flat_map(|body| &body.nodes) {
@@ -333,21 +332,10 @@ impl Outline {
         (0..2).all(|k| self.low[k] <= other.high[k] && other.low[k] <= self.high[k])
     }
 
-    /// Whether a point lies inside by more than `near` from each side: a ray from it crosses the outline an odd number of times.
+    /// Whether a point lies inside by more than `near` from each side.
     fn contains(&self, at: [f64; 2], near: f64) -> bool {
         let inside_box = (0..2).all(|k| at[k] - self.low[k] > near && self.high[k] - at[k] > near);
-        inside_box
-            && self
-                .sides
-                .iter()
-                .filter(|&&[a, b]| {
-                    let crossing = |y: f64| a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]);
-                    (a[1] > at[1]) != (b[1] > at[1]) && at[0] < crossing(at[1])
-                })
-                .count()
-                % 2
-                == 1
-            && !(self.sides.iter()).any(|[a, b]| distance_to_segment(at, *a, *b) <= near)
+        inside_box && depth_inside(&self.sides, at) > near
     }
 }
 

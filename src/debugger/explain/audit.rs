@@ -7,7 +7,7 @@
 
 use stickslip_core::contact::closest_points::place;
 use stickslip_core::fem::deformation::deformation;
-use stickslip_core::plane::distance_to_segment;
+use stickslip_core::plane::depth_inside;
 use stickslip_core::step::judged::{self, ReferenceSizes};
 use stickslip_core::{
     Event, Finding, JudgedLaw, Model, Outcome, PointDeformation, Solid, Solver, Stepper,
@@ -181,7 +181,7 @@ fn deepest(model: &Model, u: &[f64]) -> Option<PenetratingMaster> {
         }
         let outline = outline(solid, &now);
         for node in masters {
-            let depth = depth(&outline, now[node]);
+            let depth = depth_inside(&outline, now[node]);
             if depth > deepest.map_or(0.0, |deepest| deepest.depth) {
                 deepest = Some(PenetratingMaster {
                     node,
@@ -205,36 +205,4 @@ fn outline(solid: &Solid, now: &[[f64; 2]]) -> Vec<[[f64; 2]; 2]> {
             (0..POINTS).map(move |k| [at(k), at(k + 1)].map(|xi| place(edge, now, xi)))
         })
         .collect()
-}
-
-/// Distance of a point from an outline if it is inside; otherwise 0.
-fn depth(outline: &[[[f64; 2]; 2]], point: [f64; 2]) -> f64 {
-    let mut turns = 0;
-    let mut nearest = f64::INFINITY;
-    for [a, b] in outline {
-        let side = (b[0] - a[0]) * (point[1] - a[1]) - (b[1] - a[1]) * (point[0] - a[0]);
-        if a[1] <= point[1] && b[1] > point[1] && side > 0.0 {
-            turns += 1;
-        } else if a[1] > point[1] && b[1] <= point[1] && side < 0.0 {
-            turns -= 1;
-        }
-        nearest = nearest.min(distance_to_segment(point, *a, *b));
-    }
-    if turns == 0 { 0.0 } else { nearest }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn depth_is_the_distance_from_the_outline_and_zero_outside() {
-        let corners = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]];
-        let square: Vec<_> = (0..4).map(|k| [corners[k], corners[(k + 1) % 4]]).collect();
-        assert_eq!(depth(&square, [1.0, 0.25]), 0.25);
-        assert_eq!(depth(&square, [1.9, 0.5]), 0.10000000000000009);
-        for outside in [[-0.1, 0.5], [1.0, 1.2], [3.0, 0.0], [1.0, -0.3]] {
-            assert_eq!(depth(&square, outside), 0.0);
-        }
-    }
 }
