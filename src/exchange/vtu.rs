@@ -32,6 +32,17 @@ pub struct Array {
     pub values: Values,
 }
 
+impl Array {
+    /// An array with one component.
+    pub fn new(name: &str, values: Values) -> Array {
+        Array {
+            name: name.to_owned(),
+            components: &[],
+            values,
+        }
+    }
+}
+
 /// A grid with data.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Grid {
@@ -271,10 +282,9 @@ mod tests {
     proptest! {
         #[test]
         fn every_number_is_exact(values in prop::collection::vec(any::<f64>(), 0..20), said in "\\PC{0,20}") {
-            let field = |name: &str, values| Array { name: name.to_owned(), components: &[], values };
             let grid = Grid {
-                on_points: vec![field("numbers", Values::Numbers(values.clone()))],
-                fields: vec![field("said", Values::Text(said.clone()))],
+                on_points: vec![Array::new("numbers", Values::Numbers(values.clone()))],
+                fields: vec![Array::new("said", Values::Text(said.clone()))],
                 ..Grid::default()
             };
             let text = write(&grid);

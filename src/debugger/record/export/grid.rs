@@ -71,14 +71,14 @@ pub fn grid(
     contacts(model, state, event, &mut grid);
     let whole = |name: &str, value: u32| {
         let value = i32::try_from(value).unwrap_or(i32::MAX);
-        array(name, &[], Values::Wholes(vec![value]))
+        Array::new(name, Values::Wholes(vec![value]))
     };
     let lines = |name: &str, names: &mut dyn Iterator<Item = &String>| {
         let text = names.flat_map(|name| [name, "\n"]).collect();
-        array(name, &[], Values::Text(text))
+        Array::new(name, Values::Text(text))
     };
     grid.fields = vec![
-        array("TimeValue", &[], Values::Numbers(vec![load])),
+        Array::new("TimeValue", Values::Numbers(vec![load])),
         whole("increment", at.increment),
         whole("major", at.major),
         whole("minor", at.minor),
@@ -89,18 +89,12 @@ pub fn grid(
     Ok(grid)
 }
 
-fn array(name: &str, components: &'static [&'static str], values: Values) -> Array {
-    Array {
-        name: name.to_owned(),
-        components,
-        values,
-    }
-}
-
 /// Numbers on the nodes.
 fn on_points(grid: &mut Grid, name: &str, components: &'static [&'static str], all: Vec<f64>) {
-    let array = array(name, components, Values::Numbers(all));
-    grid.on_points.push(array);
+    grid.on_points.push(Array {
+        components,
+        ..Array::new(name, Values::Numbers(all))
+    });
 }
 
 /// The cells of all bodies and surfaces, with their owners.
@@ -151,9 +145,9 @@ fn cells(model: &Model, grid: &mut Grid) -> Result<(), Refusal> {
         }
     }
     grid.on_cells = vec![
-        array("body", &[], Values::Wholes(body)),
-        array("surface", &[], Values::Wholes(surface)),
-        array("rigid", &[], Values::Wholes(rigid)),
+        Array::new("body", Values::Wholes(body)),
+        Array::new("surface", Values::Wholes(surface)),
+        Array::new("rigid", Values::Wholes(rigid)),
     ];
     Ok(())
 }
@@ -180,7 +174,7 @@ fn deformations(model: &Model, state: &State, grid: &mut Grid) {
     }
     for (name, values) in ["stretch", "det_F"].into_iter().zip(numbers) {
         grid.on_cells
-            .push(array(name, &[], Values::Numbers(values)));
+            .push(Array::new(name, Values::Numbers(values)));
     }
 }
 
@@ -229,7 +223,7 @@ fn motion(model: &Model, state: &State, grid: &mut Grid) {
         .collect();
     let number = (1..).take(model.nodes.len()).collect();
     grid.on_points
-        .push(array("node", &[], Values::Wholes(number)));
+        .push(Array::new("node", Values::Wholes(number)));
     on_points(grid, "displacement", VECTOR, moved);
     if turned.iter().any(Option::is_some) {
         let turned = turned
@@ -297,7 +291,7 @@ fn contacts(model: &Model, state: &State, event: Option<&Event>, grid: &mut Grid
         }
     }
     grid.on_points
-        .push(array("contact_mode", &[], Values::Wholes(modes)));
+        .push(Array::new("contact_mode", Values::Wholes(modes)));
     on_points(grid, "contact_force", VECTOR, force);
     let by_area = [&numbers[0], &numbers[1]].map(|forces| {
         let mut stresses = vec![f64::NAN; nodes];

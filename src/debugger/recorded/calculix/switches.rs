@@ -54,11 +54,6 @@ pub fn grid(run: &CalculixRun, pressures: &[(u32, f64)]) -> Result<(Grid, usize)
         .nodes
         .iter()
         .map(|node| i32::try_from(node.label).unwrap_or(i32::MAX));
-    let array = |name: &str, values: Values| Array {
-        name: name.to_owned(),
-        components: &[],
-        values,
-    };
     let cells = deck.elements.iter().map(|element| {
         let (kind, mut nodes) = (element.kind.cell, element.nodes.clone());
         // A deck has the middle of a beam between its ends.
@@ -71,11 +66,11 @@ pub fn grid(run: &CalculixRun, pressures: &[(u32, f64)]) -> Result<(Grid, usize)
         points: deck.nodes.iter().map(|node| node.at).collect(),
         cells: cells.collect(),
         on_points: vec![
-            array("node", Values::Wholes(labels.collect())),
-            array("switches", Values::Wholes(switches)),
-            array("switches_at_most", Values::Wholes(most)),
-            array("status", Values::Wholes(status)),
-            array("pressure", Values::Numbers(pressure)),
+            Array::new("node", Values::Wholes(labels.collect())),
+            Array::new("switches", Values::Wholes(switches)),
+            Array::new("switches_at_most", Values::Wholes(most)),
+            Array::new("status", Values::Wholes(status)),
+            Array::new("pressure", Values::Numbers(pressure)),
         ],
         ..Grid::default()
     };
