@@ -25,6 +25,7 @@ mod pressures;
 mod timeline;
 mod window;
 
+use self::ExportSource::{Journal, Parts, State};
 use crate::refusal::{Refusal, refusal};
 use export_state::ExportState;
 use std::path::{Path, PathBuf};
@@ -66,8 +67,8 @@ impl ExportKind {
     /// # Errors If the name is not suitable.
     pub fn files(&self, file: &Path) -> Result<Vec<PathBuf>, String> {
         match self.made_of {
-            ExportSource::Parts(_) => Ok(market::parts(file)?.into()),
-            ExportSource::State(_) | ExportSource::Journal => Ok(vec![file.to_owned()]),
+            Parts(_) => Ok(market::parts(file)?.into()),
+            State(_) | Journal => Ok(vec![file.to_owned()]),
         }
     }
 
@@ -80,63 +81,59 @@ impl ExportKind {
         stepper: &mut Stepper,
     ) -> Option<Result<Vec<Vec<u8>>, Refusal>> {
         match self.made_of {
-            ExportSource::State(make) => Some(make(shown, stepper).map(|bytes| vec![bytes])),
-            ExportSource::Parts(make) => Some(make(shown, stepper)),
-            ExportSource::Journal => None,
+            State(make) => Some(make(shown, stepper).map(|bytes| vec![bytes])),
+            Parts(make) => Some(make(shown, stepper)),
+            Journal => None,
         }
+    }
+}
+
+const fn shown_kind(
+    extension: &'static str,
+    what: &'static str,
+    made_of: ExportSource,
+) -> ExportKind {
+    ExportKind {
+        extension,
+        what,
+        may_be_frozen: false,
+        made_of,
+    }
+}
+
+const fn frozen_kind(
+    extension: &'static str,
+    what: &'static str,
+    made_of: ExportSource,
+) -> ExportKind {
+    ExportKind {
+        may_be_frozen: true,
+        ..shown_kind(extension, what, made_of)
     }
 }
 
 /// All kinds of files.
 pub const KINDS: &[ExportKind] = &[
-    ExportKind {
-        extension: "svg",
-        what: "a picture of the state",
-        may_be_frozen: false,
-        made_of: ExportSource::State(picture::svg),
-    },
-    ExportKind {
-        extension: "png",
-        what: "the picture as a bitmap",
-        may_be_frozen: false,
-        made_of: ExportSource::State(picture::png),
-    },
-    ExportKind {
-        extension: "ron",
-        what: "the scene, or its frozen interface problem",
-        may_be_frozen: true,
-        made_of: ExportSource::State(written::ron),
-    },
-    ExportKind {
-        extension: "dat",
-        what: "the frozen interface problem for Siconos",
-        may_be_frozen: true,
-        made_of: ExportSource::State(written::dat),
-    },
-    ExportKind {
-        extension: "mtx",
-        what: "the frozen problem as three Matrix Market files",
-        may_be_frozen: true,
-        made_of: ExportSource::Parts(written::mtx),
-    },
-    ExportKind {
-        extension: "h5",
-        what: "the frozen problem for fclib",
-        may_be_frozen: true,
-        made_of: ExportSource::State(written::h5),
-    },
-    ExportKind {
-        extension: "vtu",
-        what: "the state for ParaView",
-        may_be_frozen: false,
-        made_of: ExportSource::State(grid::vtu),
-    },
-    ExportKind {
-        extension: "cast",
-        what: "a journal as a film for asciinema",
-        may_be_frozen: false,
-        made_of: ExportSource::Journal,
-    },
+    shown_kind("svg", "a picture of the state", State(picture::svg)),
+    shown_kind("png", "the picture as a bitmap", State(picture::png)),
+    frozen_kind(
+        "ron",
+        "the scene, or its frozen interface problem",
+        State(written::ron),
+    ),
+    frozen_kind(
+        "dat",
+        "the frozen interface problem for Siconos",
+        State(written::dat),
+    ),
+    frozen_kind(
+        "mtx",
+        "the frozen problem as three Matrix Market files",
+        Parts(written::mtx),
+    ),
+    frozen_kind("h5", "the frozen problem for fclib", State(written::h5)),
+    shown_kind("vtu", "the state for ParaView", State(grid::vtu)),
+    shown_kind("cast", "a journal as a film for asciinema", Journal),
 ];
 
 /// The kind of a file, by its extension.
