@@ -191,8 +191,7 @@ impl ModelBuilder {
         }
         let mut is_on_body = vec![false; dofs.equation.len()];
         for &node in &on_body {
-            let first = dofs.first[node];
-            is_on_body[first..first + usize::from(dofs.count[node])].fill(true);
+            is_on_body[dofs.of_node(node)].fill(true);
         }
         dofs.number(&mut model.bodies, |dof| {
             is_on_body[dof] && !held.contains(&dof)

@@ -36,11 +36,9 @@ pub fn kind(model: &Model, watched: &MonitorQuantity) -> MonitorKind {
     match watched {
         MonitorQuantity::Displacement { dof } => {
             // The rotation is the third unknown of a node.
-            let turns = |n: usize| model.dofs.count[n] == 3 && model.dofs.first[n] + 2 == *dof;
-            if (0..model.nodes.len()).any(turns) {
-                Rotation
-            } else {
-                Length
+            match model.dofs.node_of(*dof) {
+                Some((_, 2)) => Rotation,
+                _ => Length,
             }
         }
         MonitorQuantity::Contact { .. } | MonitorQuantity::Reaction { .. } => Force,

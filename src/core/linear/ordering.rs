@@ -14,8 +14,8 @@ impl System {
         let dofs = &model.dofs;
         let mut groups = vec![0; dofs.equations + 2 * self.interfaces.len()];
         let mut node_of = vec![None; dofs.len()];
-        for (node, (&first, &count)) in dofs.first.iter().zip(&dofs.count).enumerate() {
-            node_of[first..first + count as usize].fill(Some(node));
+        for node in 0..dofs.first.len() {
+            node_of[dofs.of_node(node)].fill(Some(node));
         }
         for body in &model.bodies {
             if let BodyKind::Beam(beam) = &body.kind {

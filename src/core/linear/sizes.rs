@@ -9,7 +9,6 @@
 
 use crate::fem::pressure::Pressures;
 use crate::linalg::largest;
-use crate::model::Component;
 use crate::model::{Body, BodyKind, Factor, Form};
 use crate::plane::max_abs;
 use crate::{LinearisationPoint, Model};
@@ -185,17 +184,12 @@ fn peak(path: &[f64], scale: &Factor) -> f64 {
 
 /// Quantity balanced by the equation of each degree of freedom.
 fn kinds(model: &Model) -> Vec<BalancedQuantity> {
-    let mut kinds = vec![BalancedQuantity::Length; model.dofs.len()];
-    for (&first, &count) in model.dofs.first.iter().zip(&model.dofs.count) {
-        for k in 0..count as usize {
-            kinds[first + k] = if k == Component::Rotation as usize {
-                BalancedQuantity::Moment
-            } else {
-                BalancedQuantity::Force
-            };
-        }
-    }
-    kinds
+    let kind = |dof: usize| match model.dofs.node_of(dof) {
+        Some((_, 2)) => BalancedQuantity::Moment,
+        Some(_) => BalancedQuantity::Force,
+        None => BalancedQuantity::Length,
+    };
+    (0..model.dofs.len()).map(kind).collect()
 }
 
 /// Order of magnitude of the softest body's overall stiffness: bending stiffness for a beam.

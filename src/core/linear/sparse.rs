@@ -140,9 +140,9 @@ impl SparseInterface {
                 self.free[place] += sign * value;
                 continue;
             }
-            let node = model.dofs.first.partition_point(|&first| first <= load.dof) - 1;
-            if let Some(contact) = self.contact_of[node] {
-                let axis = load.dof - model.dofs.first[node];
+            if let Some((node, axis)) = model.dofs.node_of(load.dof)
+                && let Some(contact) = self.contact_of[node]
+            {
                 let (place, sign) = turned(2 * contact + axis);
                 self.load[place] += sign * value;
             }

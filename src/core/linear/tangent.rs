@@ -221,12 +221,8 @@ fn pivoted(model: &Model, lengths: &[bool]) -> Vec<bool> {
             BodyKind::Solid(_) | BodyKind::Truss(_) => false,
         };
         for &node in body.nodes.iter().filter(|_| saddle) {
-            let first = model.dofs.first[node];
-            for dof in first..first + model.dofs.count[node] as usize {
-                if let Some(e) = model.dofs.equation[dof] {
-                    pivoted[e] = true;
-                }
-            }
+            let own = &model.dofs.equation[model.dofs.of_node(node)];
+            own.iter().flatten().for_each(|&e| pivoted[e] = true);
         }
     }
     pivoted

@@ -3,6 +3,7 @@
 use super::body::{Body, BodyKind, Form};
 use crate::documented::documented;
 use serde::{Deserialize, Serialize};
+use std::ops::Range;
 
 /// Numbering of the degrees of freedom and of the unknowns among them.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -75,6 +76,20 @@ impl Dofs {
     /// Whether there are no degrees of freedom.
     pub fn is_empty(&self) -> bool {
         self.equation.is_empty()
+    }
+
+    /// The degrees of freedom of a node.
+    pub fn of_node(&self, node: usize) -> Range<usize> {
+        let first = self.first[node];
+        first..first + usize::from(self.count[node])
+    }
+
+    /// The node of a degree of freedom, and the number of its component there; `None` for internal unknowns of bodies.
+    pub fn node_of(&self, dof: usize) -> Option<(usize, usize)> {
+        let after = self.first.partition_point(|first| *first <= dof);
+        let node = after.checked_sub(1)?;
+        let component = dof - self.first[node];
+        (component < usize::from(self.count[node])).then_some((node, component))
     }
 
     /// Number of a node's degree of freedom; `None` if the node has no such component.

@@ -82,15 +82,9 @@ impl Attempt {
 impl Major {
     fn new(stepper: &Stepper, after: Norms) -> Major {
         let (state, dofs) = (stepper.state(), &stepper.model().dofs);
-        let largest = stepper.largest_residual().and_then(|(dof, force)| {
-            Some((
-                (0..dofs.first.len()).find(|node| {
-                    let first = dofs.first[*node];
-                    (first..first + usize::from(dofs.count[*node])).contains(&dof)
-                })?,
-                force,
-            ))
-        });
+        let largest = stepper
+            .largest_residual()
+            .and_then(|(dof, force)| Some((dofs.node_of(dof)?.0, force)));
         let contacts = state.nodes.iter().map(|node| (node.mode, node.spot));
         Major {
             after,

@@ -69,15 +69,12 @@ pub fn conditions(model: &Model, load_factor: f64, place: &dyn Fn(usize) -> Poin
     let mut found = Conditions::default();
     let mut vectors: BTreeMap<(usize, Given), Point> = BTreeMap::new();
     for (given, dof, value) in loads.chain(motions).filter(|(.., value)| *value != 0.0) {
-        // The degrees of freedom of the nodes ascend; those inside bodies come last.
-        let node = model.dofs.first.partition_point(|first| *first <= dof);
-        let Some(node) = node.checked_sub(1) else {
-            continue;
-        };
-        match dof - model.dofs.first[node] {
-            axis @ (0 | 1) => vectors.entry((node, given)).or_default()[axis] += value,
-            2 if model.dofs.count[node] == 3 => found.turns.push((node, given, value > 0.0)),
-            _ => {}
+        match model.dofs.node_of(dof) {
+            Some((node, axis @ (0 | 1))) => {
+                vectors.entry((node, given)).or_default()[axis] += value;
+            }
+            Some((node, _)) => found.turns.push((node, given, value > 0.0)),
+            None => {}
         }
     }
     let arrows = vectors.into_iter().map(|((node, given), along)| {

@@ -328,8 +328,7 @@ pub fn body_without_friction<'a>(model: &'a Model, contacts: &[ContactRecord]) -
         return None;
     }
     let is_free = |node: usize| {
-        let first = model.dofs.first[node];
-        let own = first..first + usize::from(model.dofs.count[node]);
+        let own = model.dofs.of_node(node);
         model.dofs.equation[own].iter().all(Option::is_some)
     };
     let slides = |body: &&Body| {

@@ -91,15 +91,16 @@ fn roles(model: &Model) -> Vec<(Role, [f64; 2])> {
         all.push((Role::Slave, model.nodes[contact.node].at));
     }
     let loaded: HashSet<usize> = model.loads.iter().map(|load| load.dof).collect();
-    let nodes = model.nodes.iter().zip(&model.dofs.first);
-    for ((node, &first), &count) in nodes.zip(&model.dofs.count) {
-        for component in 0..usize::from(count) {
-            if model.dofs.equation[first + component].is_none() {
-                all.push((Role::Restrained(component), node.at));
-            }
-            if loaded.contains(&(first + component)) {
-                all.push((Role::Loaded(component), node.at));
-            }
+    for (dof, equation) in model.dofs.equation.iter().enumerate() {
+        let Some((node, component)) = model.dofs.node_of(dof) else {
+            continue;
+        };
+        let at = model.nodes[node].at;
+        if equation.is_none() {
+            all.push((Role::Restrained(component), at));
+        }
+        if loaded.contains(&dof) {
+            all.push((Role::Loaded(component), at));
         }
     }
     all

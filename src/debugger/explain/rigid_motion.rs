@@ -7,7 +7,7 @@ use std::collections::HashSet;
 use stickslip_core::contact::projection::{Projection, projection_at, tangent};
 use stickslip_core::fem::pressure::Pressures;
 use stickslip_core::linear::singular::LooseMotion;
-use stickslip_core::model::Factor;
+use stickslip_core::model::{Factor, Load};
 use stickslip_core::plane::dot;
 use stickslip_core::{Mode, Model, RigidMotion, Singular, State, Stepper};
 use stickslip_scene::{first_of, shortest, sig4};
@@ -106,31 +106,22 @@ impl<'a> BodyMotion<'a> {
 
     /// Power of the loads on the body in this motion: a force or a moment.
     fn power(&self, state: &State) -> f64 {
-        let (model, dofs) = (self.model, &self.model.dofs);
-        let nodes = &model.bodies[self.body].nodes;
-        let of = |load: &stickslip_core::model::Load| {
-            let node = *nodes.iter().find(|node| {
-                let first = dofs.first[**node];
-                (first..first + usize::from(dofs.count[**node])).contains(&load.dof)
-            })?;
+        let model = self.model;
+        let rate = |dof: usize| {
+            let (node, component) = model.dofs.node_of(dof)?;
             let v = self.velocity(self.places[node]);
-            let rate = match (load.dof - dofs.first[node], self.motion) {
+            self.has(node).then_some(match (component, self.motion) {
                 (axis @ 0..=1, _) => v[axis],
                 (_, LooseMotion::Rotation(_)) => self.sign,
                 _ => 0.0,
-            };
-            Some(load.value * load.scale.at(state.load_factor) * rate)
+            })
         };
+        let factor = |scale: &Factor| scale.at(state.load_factor);
+        let of = |load: &Load| Some(load.value * factor(&load.scale) * rate(load.dof)?);
         let dead: f64 = model.loads.iter().filter_map(of).sum();
         let mut following = 0.0;
-        let factor = |scale: &Factor| scale.at(state.load_factor);
         Pressures::new(model).each(model, &state.u, factor, |dof, force| {
-            if let Some(&node) = nodes
-                .iter()
-                .find(|node| (dofs.first[**node]..dofs.first[**node] + 2).contains(&dof))
-            {
-                following += force * self.velocity(self.places[node])[dof - dofs.first[node]];
-            }
+            following += rate(dof).map_or(0.0, |rate| force * rate);
         });
         dead + following
     }

@@ -385,9 +385,8 @@ impl SlaveRecord {
 }
 
 fn displacement(model: &Model, u: &[f64], node: usize) -> Displacement {
-    let first = model.dofs.first[node];
-    let count = usize::from(model.dofs.count[node]);
-    let at = |k: usize| (k < count).then(|| u[first + k]);
+    let own = &u[model.dofs.of_node(node)];
+    let at = |k: usize| own.get(k).copied();
     Displacement {
         node: model.nodes[node].name.clone(),
         x: at(0).unwrap_or(0.0),
