@@ -8,6 +8,7 @@
 
 use super::snapshot::{Displacement, Recorded, SlaveRecord, Snapshot};
 use crate::explain::names;
+use crate::explain::tested::Dimension::{self, Force, Length, Ratio};
 use std::collections::BTreeMap;
 use std::fmt::{self, Debug};
 use stickslip_core::linear::singular::LooseMotion;
@@ -56,32 +57,31 @@ pub struct Differences {
     pub rows: Vec<Difference>,
     /// Largest relative difference of equal numbers.
     tolerance: f64,
+    /// Scales of forces and lengths.
+    scales: [f64; 2],
 }
 
-/// What is compared: a field of the whole state, or of a node.
-#[derive(Clone, Copy)]
-struct Item<'a> {
-    node: Option<&'a str>,
-    field: &'a str,
+/// A value of one side.
+enum FieldValue {
+    /// Compared exactly.
+    Text(String),
+    /// Compared within the tolerance, if both sides have it.
+    Number(Option<f64>, Dimension),
 }
 
-impl<'a> From<&'a str> for Item<'a> {
-    fn from(field: &'a str) -> Item<'a> {
-        Item { node: None, field }
-    }
+/// What is compared, and its value.
+type Field = (String, FieldValue);
+
+fn exact(field: &str, value: impl Debug) -> Field {
+    text(field, word(value))
 }
 
-impl<'a> From<(&'a str, &'a str)> for Item<'a> {
-    fn from((node, field): (&'a str, &'a str)) -> Item<'a> {
-        let node = Some(node);
-        Item { node, field }
-    }
+fn text(field: &str, value: impl Into<String>) -> Field {
+    (field.to_owned(), FieldValue::Text(value.into()))
 }
 
-/// Scales of forces and lengths.
-struct Scales {
-    force: f64,
-    length: f64,
+fn number(field: &str, value: impl Into<Option<f64>>, of: Dimension) -> Field {
+    (field.to_owned(), FieldValue::Number(value.into(), of))
 }
 
 /// Compares two snapshots, node by node.
@@ -91,35 +91,98 @@ pub fn compare(a: &Snapshot, b: &Snapshot) -> Differences {
 
 /// The same with another tolerance of numbers.
 pub fn compare_within(a: &Snapshot, b: &Snapshot, tolerance: f64) -> Differences {
-    Differences::between(a, b, tolerance)
+    let mut found = Differences {
+        rows: Vec::new(),
+        tolerance,
+        scales: [
+            force(&a.state).max(force(&b.state)),
+            length(a).max(length(b)),
+        ],
+    };
+    found.scenes(a, b);
+    for of in [run, before, after] {
+        found.fields(None, of(a), of(b));
+    }
+    let (left, right) = (&a.state, &b.state);
+    found.named(SLAVE, &left.slaves, &right.slaves, |s| &s.node, slave);
+    let [left, right] = [left, right].map(|state| &state.displacements);
+    found.named(NODE, left, right, |d| &d.node, displacement);
+    found.fields(None, shear(a), shear(b));
+    found
+}
+
+fn run(snapshot: &Snapshot) -> Vec<Field> {
+    let (at, state) = (snapshot.position, &snapshot.state);
+    vec![
+        exact("interventions", interventions(snapshot)),
+        exact("minor iterations done", snapshot.steps),
+        exact("increment", at.increment),
+        exact("attempt", at.attempt),
+        exact("major", at.major),
+        exact("minor", at.minor),
+        number("load factor", state.load_factor, Ratio),
+        text("status", status(&state.status)),
+    ]
+}
+
+fn before(snapshot: &Snapshot) -> Vec<Field> {
+    norms("residual before", snapshot.state.before.as_ref())
+}
+
+fn after(snapshot: &Snapshot) -> Vec<Field> {
+    norms("residual after", snapshot.state.after.as_ref())
+}
+
+fn norms(when: &str, norms: Option<&Norms>) -> Vec<Field> {
+    let numbers = norms.map(|norms| {
+        [
+            ("force", norms.force, Force),
+            ("relative", norms.relative, Ratio),
+            ("interface", norms.interface, Ratio),
+            ("correction", norms.correction, Ratio),
+        ]
+    });
+    let numbers = numbers.into_iter().flatten();
+    let numbers = numbers.map(|(what, value, of)| number(&format!("{when}, {what}"), value, of));
+    [exact(when, norms.is_some())]
+        .into_iter()
+        .chain(numbers)
+        .collect()
+}
+
+fn slave(slave: &SlaveRecord) -> Vec<Field> {
+    vec![
+        text("mode", names::mode(slave.mode)),
+        text("next", names::mode(slave.next)),
+        text("rule", slave.rule.map_or(ABSENT, Rule::name)),
+        exact("forced", slave.forced),
+        number("gap", slave.gap, Length),
+        number("f_n", slave.f_n, Force),
+        number("f_t", slave.f_t, Force),
+        number("t_max", slave.t_max, Force),
+        number("slip", slave.slip, Length),
+    ]
+}
+
+fn displacement(of: &Displacement) -> Vec<Field> {
+    vec![
+        number("x", of.x, Length),
+        number("y", of.y, Length),
+        number("rotation", of.rotation, Ratio),
+    ]
+}
+
+fn shear(snapshot: &Snapshot) -> Vec<Field> {
+    let forces = &snapshot.state.shear;
+    let numbers = (1..).zip(forces);
+    let numbers = numbers.map(|(k, value)| number(&format!("shear force {k}"), *value, Force));
+    [exact("number of shear forces", forces.len())]
+        .into_iter()
+        .chain(numbers)
+        .collect()
 }
 
 impl Differences {
-    /// All differences.
-    fn between(a: &Snapshot, b: &Snapshot, tolerance: f64) -> Differences {
-        let mut found = Differences {
-            rows: Vec::new(),
-            tolerance,
-        };
-        found.scenes(a, b);
-        found.exact("interventions", &interventions(a), &interventions(b));
-        found.exact("minor iterations done", &a.steps, &b.steps);
-        for (what, left, right) in [
-            ("increment", a.position.increment, b.position.increment),
-            ("attempt", a.position.attempt, b.position.attempt),
-            ("major", a.position.major, b.position.major),
-            ("minor", a.position.minor, b.position.minor),
-        ] {
-            found.exact(what, &left, &right);
-        }
-        let scales = Scales {
-            force: force(&a.state).max(force(&b.state)),
-            length: length(a).max(length(b)),
-        };
-        found.states(&a.state, &b.state, &scales);
-        found
-    }
-
     /// Whether there are no differences.
     pub fn is_empty(&self) -> bool {
         self.rows.is_empty()
@@ -139,161 +202,76 @@ impl Differences {
         let (left, right) = (values(a), values(b));
         for (path, pair) in paired(&left, &right) {
             let text = |value: Option<&String>| value.map_or(ABSENT.to_owned(), Clone::clone);
-            self.exact_text(format!("scene {path}").as_str(), text(pair.0), text(pair.1));
+            self.text(None, format!("scene {path}"), text(pair.0), text(pair.1));
         }
         if self.rows.len() == before {
-            self.exact_text(
-                "scene",
-                "original".into(),
-                "differs, but not in a scalar".into(),
-            );
-        }
-    }
-
-    fn states(&mut self, a: &Recorded, b: &Recorded, scales: &Scales) {
-        self.number("load factor", a.load_factor, b.load_factor, 1.0);
-        self.exact_text("status", status(&a.status), status(&b.status));
-        self.norms("before", a.before.as_ref(), b.before.as_ref(), scales);
-        self.norms("after", a.after.as_ref(), b.after.as_ref(), scales);
-        self.named(
-            SLAVE,
-            &a.slaves,
-            &b.slaves,
-            |s| &s.node,
-            |all, a, b| {
-                all.slave(a, b, scales);
-            },
-        );
-        self.named(
-            NODE,
-            &a.displacements,
-            &b.displacements,
-            |d| &d.node,
-            |all, a, b| {
-                all.displacement(a, b, scales);
-            },
-        );
-        self.exact("number of shear forces", &a.shear.len(), &b.shear.len());
-        for (k, (left, right)) in a.shear.iter().zip(&b.shear).enumerate() {
-            self.number(
-                format!("shear force {}", k + 1).as_str(),
-                *left,
-                *right,
-                scales.force,
-            );
-        }
-    }
-
-    fn slave(&mut self, a: &SlaveRecord, b: &SlaveRecord, scales: &Scales) {
-        let name = a.node.as_str();
-        let rule = |s: &SlaveRecord| s.rule.map_or(ABSENT, Rule::name).to_owned();
-        for (what, left, right) in [
-            ("mode", names::mode(a.mode), names::mode(b.mode)),
-            ("next", names::mode(a.next), names::mode(b.next)),
-        ] {
-            self.exact_text((name, what), left.into(), right.into());
-        }
-        self.exact_text((name, "rule"), rule(a), rule(b));
-        self.exact((name, "forced"), &a.forced, &b.forced);
-        match (a.gap, b.gap) {
-            (Some(left), Some(right)) => {
-                self.number((name, "gap"), left, right, scales.length);
-            }
-            (left, right) => self.exact((name, "gap"), &left, &right),
-        }
-        for (what, left, right, scale) in [
-            ("f_n", a.f_n, b.f_n, scales.force),
-            ("f_t", a.f_t, b.f_t, scales.force),
-            ("t_max", a.t_max, b.t_max, scales.force),
-            ("slip", a.slip, b.slip, scales.length),
-        ] {
-            self.number((name, what), left, right, scale);
-        }
-    }
-
-    fn displacement(&mut self, a: &Displacement, b: &Displacement, scales: &Scales) {
-        let name = a.node.as_str();
-        self.number((name, "x"), a.x, b.x, scales.length);
-        self.number((name, "y"), a.y, b.y, scales.length);
-        match (a.rotation, b.rotation) {
-            (Some(left), Some(right)) => {
-                self.number((name, "rotation"), left, right, 1.0);
-            }
-            (left, right) => self.exact((name, "rotation"), &left, &right),
-        }
-    }
-
-    fn norms(&mut self, when: &str, a: Option<&Norms>, b: Option<&Norms>, scales: &Scales) {
-        let (Some(a), Some(b)) = (a, b) else {
-            self.exact(
-                format!("residual {when}").as_str(),
-                &a.is_some(),
-                &b.is_some(),
-            );
-            return;
-        };
-        for (what, left, right, scale) in [
-            ("force", a.force, b.force, scales.force),
-            ("relative", a.relative, b.relative, 1.0),
-            ("interface", a.interface, b.interface, 1.0),
-            ("correction", a.correction, b.correction, 1.0),
-        ] {
-            self.number(
-                format!("residual {when}, {what}").as_str(),
-                left,
-                right,
-                scale,
-            );
+            let [left, right] = ["original", "differs, but not in a scalar"].map(str::to_owned);
+            self.text(None, "scene".to_owned(), left, right);
         }
     }
 
     /// Compares the items that both sides have under a name; one that only one side has is a difference.
     fn named<'a, T>(
         &mut self,
-        field: &str,
+        kind: &str,
         a: &'a [T],
         b: &'a [T],
         name: fn(&T) -> &String,
-        compare: impl Fn(&mut Self, &T, &T),
+        fields: fn(&T) -> Vec<Field>,
     ) {
         let by_name = |all: &'a [T]| -> BTreeMap<String, &'a T> {
             all.iter().map(|one| (name(one).clone(), one)).collect()
         };
         for (node, pair) in paired(&by_name(a), &by_name(b)) {
             match pair {
-                (Some(left), Some(right)) => compare(self, left, right),
+                (Some(left), Some(right)) => self.fields(Some(node), fields(left), fields(right)),
                 (left, right) => {
                     let text = |there: bool| if there { "there" } else { ABSENT }.to_owned();
                     let (left, right) = (text(left.is_some()), text(right.is_some()));
-                    self.exact_text((node.as_str(), field), left, right);
+                    self.text(Some(node), kind.to_owned(), left, right);
                 }
             }
         }
     }
 
-    fn exact<'a, T: PartialEq + Debug>(&mut self, item: impl Into<Item<'a>>, left: &T, right: &T) {
-        if left != right {
-            self.exact_text(item, word(left), word(right));
+    /// Compares the fields that both sides have.
+    fn fields(&mut self, node: Option<&String>, left: Vec<Field>, right: Vec<Field>) {
+        let [force, length] = self.scales;
+        for ((field, left), (_, right)) in left.into_iter().zip(right) {
+            match (left, right) {
+                (FieldValue::Number(Some(left), of), FieldValue::Number(Some(right), _)) => {
+                    self.number(node, field, (left, right), of.scale(force, length));
+                }
+                (left, right) => {
+                    let [left, right] = [left, right].map(|value| match value {
+                        FieldValue::Text(text) => text,
+                        FieldValue::Number(value, _) => word(value),
+                    });
+                    self.text(node, field, left, right);
+                }
+            }
         }
     }
 
-    fn exact_text<'a>(&mut self, item: impl Into<Item<'a>>, left: String, right: String) {
+    fn text(&mut self, node: Option<&String>, field: String, left: String, right: String) {
         if left != right {
-            self.add(item.into(), left, right, None);
+            self.rows.push(Difference {
+                node: node.cloned(),
+                field,
+                left,
+                right,
+                apart: None,
+            });
         }
     }
 
-    fn add(&mut self, item: Item, left: String, right: String, apart: Option<(f64, f64)>) {
-        self.rows.push(Difference {
-            node: item.node.map(str::to_owned),
-            field: item.field.to_owned(),
-            left,
-            right,
-            apart,
-        });
-    }
-
-    fn number<'a>(&mut self, item: impl Into<Item<'a>>, left: f64, right: f64, scale: f64) {
+    fn number(
+        &mut self,
+        node: Option<&String>,
+        field: String,
+        (left, right): (f64, f64),
+        scale: f64,
+    ) {
         // Equality covers the infinities, whose difference is NaN.
         if left == right || (left.is_nan() && right.is_nan()) {
             return;
@@ -303,15 +281,20 @@ impl Differences {
         if apart <= allowed && apart.is_finite() {
             return;
         }
-        let (left, right) = (format!("{left:?}"), format!("{right:?}"));
-        self.add(item.into(), left, right, Some((apart, allowed)));
+        self.rows.push(Difference {
+            node: node.cloned(),
+            field,
+            left: format!("{left:?}"),
+            right: format!("{right:?}"),
+            apart: Some((apart, allowed)),
+        });
     }
 }
 
 const ABSENT: &str = "-";
 
 /// The name of a value: `Some(FixedSlides)` gives `FixedSlides`.
-fn word<T: Debug>(value: &T) -> String {
+fn word(value: impl Debug) -> String {
     let text = format!("{value:?}");
     match text.strip_prefix("Some(").and_then(|t| t.strip_suffix(')')) {
         Some(inner) => inner.to_owned(),
