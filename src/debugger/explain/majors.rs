@@ -4,6 +4,7 @@
 use super::attempt::{Attempt, Major};
 use super::cycles::place;
 use super::facts::{Fact, Part};
+use super::moves_away::furthest;
 use super::names::{mode, slave};
 use stickslip_core::model::{Geometry, ResidualMethod};
 use stickslip_core::plane::{cross, distance, dot};
@@ -323,24 +324,11 @@ fn changes(model: &Model, majors: &[Major]) -> Vec<String> {
 
 /// Describes divergence: the node that moved furthest, and the errors.
 pub fn flight_words(model: &Model, state: &State, attempt: &Attempt) -> Vec<Fact> {
-    let way = |node: usize| {
-        let (now, then) = (
-            model.place(&state.u, node),
-            model.place(&state.start.u, node),
-        );
-        distance(now, then)
-    };
-    let furthest = model
-        .bodies
-        .iter()
-        .flat_map(|body| &body.nodes)
-        .copied()
-        .max_by(|a, b| way(*a).total_cmp(&way(*b)));
-    let place = furthest.map(|node| {
+    let place = furthest(model, &state.start.u, &state.u).map(|(node, way)| {
         Fact::why(format!(
             "{} moved furthest from the last equilibrium, by {} (scene length {})",
             model.nodes[node].name,
-            sig4(way(node)),
+            sig4(way),
             sig4(model.length)
         ))
     });

@@ -36,9 +36,9 @@ pub fn moves_away(model: &Model, state: &State, stop: &dyn Fn() -> bool) -> Opti
                 }
             }
             Outcome::Motion(MotionEvent::Step { .. }) => {
-                let (node, way) = furthest(model, &from.u, &now.u);
-                if way > FAR * model.length {
-                    return ControlFlow::Break(Some((node, way)));
+                let furthest = furthest(model, &from.u, &now.u);
+                if furthest.is_some_and(|(_, way)| way > FAR * model.length) {
+                    return ControlFlow::Break(furthest);
                 }
             }
             _ => {}
@@ -57,13 +57,12 @@ pub fn moves_away(model: &Model, state: &State, stop: &dyn Fn() -> bool) -> Opti
     ))
 }
 
-/// The node that has moved furthest between these displacements, and how far.
-fn furthest(model: &Model, from: &[f64], now: &[f64]) -> (usize, f64) {
+/// The node of a body that has moved furthest between these displacements, and how far.
+pub(super) fn furthest(model: &Model, from: &[f64], now: &[f64]) -> Option<(usize, f64)> {
     let way = |node: usize| {
         let [from, to] = [from, now].map(|u| model.place(u, node));
         (node, distance(from, to))
     };
     let nodes = model.bodies.iter().flat_map(|body| &body.nodes).copied();
-    let all = nodes.map(way);
-    all.max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0, 0.0))
+    nodes.map(way).max_by(|a, b| a.1.total_cmp(&b.1))
 }
