@@ -69,6 +69,12 @@ impl ContactRecord {
         (slides && self.f_t > 0.0 && self.slip > 0.0).then(|| turn(force, slip).abs())
     }
 
+    /// The components of the tangential force along t and n × t in space; `None` in the plane.
+    pub fn shear(&self) -> Option<[f64; 2]> {
+        let [force, _] = self.directions?;
+        Some([self.f_t * force.cos(), self.f_t * force.sin()])
+    }
+
     /// Whether an attached solver selects another next mode than its declared rules give for the same numbers, without being
     /// forced.
     pub fn differs(&self) -> bool {

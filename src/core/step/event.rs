@@ -97,9 +97,8 @@ impl Event {
     /// The contact force on a slave node along the axes; z is 0 in the plane. `None` without a record.
     pub fn force(&self, slave: usize) -> Option<[f64; 3]> {
         let found = self.nodes.get(slave)?;
-        Some(match (self.frames.get(slave), found.directions) {
-            (Some(frame), Some([direction, _])) => {
-                let (f_1, f_2) = (found.f_t * direction.cos(), found.f_t * direction.sin());
+        Some(match (self.frames.get(slave), found.shear()) {
+            (Some(frame), Some([f_1, f_2])) => {
                 let ([n, t], b) = (frame, second_tangent(frame));
                 [0, 1, 2].map(|k| found.f_n * n[k] + f_1 * t[k] + f_2 * b[k])
             }

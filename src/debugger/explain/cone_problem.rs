@@ -135,8 +135,7 @@ pub fn pushes(
 
 /// The force (f_n, f_1, f_2) of a contact in space, if it is known.
 fn force(record: &ContactRecord) -> Option<[f64; 3]> {
-    let [direction, _] = record.directions?;
-    let (sin, cos) = direction.sin_cos();
-    let force = [record.f_n, record.f_t * cos, record.f_t * sin];
+    let [f_1, f_2] = record.shear()?;
+    let force = [record.f_n, f_1, f_2];
     force.iter().all(|x| x.is_finite()).then_some(force)
 }

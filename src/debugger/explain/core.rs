@@ -123,8 +123,8 @@ pub fn core(whole: &InterfaceProblem) -> Option<Core> {
     Some(best)
 }
 
-/// Whether the modes of a pattern change.
-fn changes(pattern: &[Mode]) -> bool {
+/// Whether a pattern, as of modes, changes.
+pub(super) fn changes<T: PartialEq>(pattern: &[T]) -> bool {
     pattern.windows(2).any(|pair| pair[0] != pair[1])
 }
 

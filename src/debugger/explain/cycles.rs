@@ -1,5 +1,6 @@
 //! Describes cycles of minor and major iterations.
 
+use crate::explain::core::changes;
 use crate::explain::names::{mode, slave};
 use stickslip_core::step::major_history::Stop;
 use stickslip_core::{Cycle, MajorCycle, Mode, Model};
@@ -27,8 +28,7 @@ pub fn major_cycle(model: &Model, round: &MajorCycle) -> String {
     let member = |(s, stops): &(usize, Vec<Stop>)| {
         let elements: Vec<_> = stops.iter().map(|stop| stop.element).collect();
         let modes: Vec<_> = stops.iter().map(|stop| stop.mode).collect();
-        let moves = elements.iter().any(|e| *e != elements[0]);
-        let switches = modes.iter().any(|m| *m != modes[0]);
+        let (moves, switches) = (changes(&elements), changes(&modes));
         let words: Vec<String> = stops
             .iter()
             .take(MOST_STOPS)
@@ -80,7 +80,6 @@ pub fn cycle(model: &Model, cycle: &Cycle) -> String {
         }
     };
     // Members whose modes change come first: the T_max of many others may follow them.
-    let changes = |modes: &[Mode]| modes.windows(2).any(|pair| pair[0] != pair[1]);
     let (changing, following): (Vec<_>, Vec<_>) =
         cycle.members.iter().partition(|(_, modes)| changes(modes));
     let mut text = Vec::new();

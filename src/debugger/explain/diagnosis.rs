@@ -1,12 +1,12 @@
 //! Why the minor iterations cycle and what escapes the cycle, found from its frozen interface problem, as data
 //! and in words.
 
-use crate::explain::core::{Core, core, cycle};
+use crate::explain::core::{Core, changes, core, cycle};
 use crate::explain::facts::{Fact, Part};
 use crate::explain::influence::{Influence, influences};
 use crate::explain::{names, proven, tested};
 use stickslip_core::interface::census::{self, Census, MOST, MOST_SEARCHED, search};
-use stickslip_core::interface::problem::Condition;
+use stickslip_core::interface::problem::{Answer, Condition};
 use stickslip_core::model::SlipCount;
 use stickslip_core::strategy::method;
 use stickslip_core::{
@@ -115,9 +115,8 @@ impl Diagnosis {
         let phases = phases(problem, cycle.period)?;
         let core = core(problem);
         let members: Vec<usize> = cycle.members.iter().map(|member| member.0).collect();
-        let changes = |member: &&(usize, Vec<Mode>)| member.1.iter().any(|m| *m != member.1[0]);
-        let changing = cycle.members.iter().filter(changes).map(|member| member.0);
-        let changing: Vec<usize> = changing.collect();
+        let changing = cycle.members.iter().filter(|member| changes(&member.1));
+        let changing: Vec<usize> = changing.map(|member| member.0).collect();
         let mut studied = match members.len() > MOST && !changing.is_empty() {
             true => problem.reduced(&changing)?,
             false => problem.reduced(&members)?,
@@ -581,15 +580,7 @@ pub(super) fn census_words<'a>(census: &Census, name: &impl Fn(usize) -> &'a str
         )),
     }
     for (number, found) in census.answers.iter().enumerate().take(MOST_TOLD) {
-        let nodes = joined(
-            found
-                .answer
-                .nodes
-                .iter()
-                .enumerate()
-                .map(|(place, node)| format!("{} {}", name(place), answer_words(node))),
-            ", ",
-        );
+        let nodes = modes_words(&found.answer, name);
         let margin = found
             .answer
             .worst()
@@ -666,6 +657,13 @@ pub fn answer_words(node: &NodeAnswer) -> &'static str {
         Mode::Sliding if node.limit == 0.0 && node.f_n != 0.0 => "sliding",
         _ => assumed_words(node.assumed),
     }
+}
+
+/// The modes of all nodes in a state, in words.
+pub(super) fn modes_words<'a>(answer: &Answer, name: &impl Fn(usize) -> &'a str) -> String {
+    let nodes = answer.nodes.iter().enumerate();
+    let words = nodes.map(|(place, node)| format!("{} {}", name(place), answer_words(node)));
+    joined(words, ", ")
 }
 
 /// A condition of contact or friction, in words.

@@ -1,42 +1,20 @@
 //! Facts of the diagnosis page, by the part of the page that shows them.
 
-/// A part of the page below What. Parts are shown in this order.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Part {
-    /// The cause, with node, body, element and numbers.
-    Why,
-    /// What happened in a finished run.
-    Report,
-    /// Which node pushes which, one change of mode per line.
-    Loop,
-    /// The consistent states of the frozen problem.
-    Census,
-    /// How the residuals and T_max develop.
-    Rates,
-    /// Everything else.
-    Details,
-}
-
-impl Part {
-    /// The parts below Try.
-    pub const BELOW: [Part; 5] = [
-        Part::Report,
-        Part::Loop,
-        Part::Census,
-        Part::Rates,
-        Part::Details,
-    ];
-
-    /// Heading of the part.
-    pub fn heading(self) -> &'static str {
-        match self {
-            Part::Why => "Why",
-            Part::Report => "Report",
-            Part::Loop => "Loop",
-            Part::Census => "Census",
-            Part::Rates => "Rates",
-            Part::Details => "Details",
-        }
+stickslip_core::words! {
+    /// A part of the page below What, with its heading. Parts are shown in this order; Try is between the first two.
+    pub enum Part, ALL, heading {
+        /// The cause, with node, body, element and numbers.
+        Why "Why",
+        /// What happened in a finished run.
+        Report "Report",
+        /// Which node pushes which, one change of mode per line.
+        Loop "Loop",
+        /// The consistent states of the frozen problem.
+        Census "Census",
+        /// How the residuals and T_max develop.
+        Rates "Rates",
+        /// Everything else.
+        Details "Details",
     }
 }
 

@@ -4,14 +4,14 @@
 //! Small negative eigenvalues are set to zero, and the problem is solved again with all strategies of the
 //! ladder. The solution is checked with the original matrix.
 
-use super::diagnosis::{answer_words, condition_words};
+use super::diagnosis::{condition_words, modes_words};
 use stickslip_core::interface::census::search;
 use stickslip_core::interface::definite::Compliance;
 use stickslip_core::interface::pivoting::{CoulombForm, PathEnd, Pivoting};
 use stickslip_core::interface::problem::Answer;
 use stickslip_core::strategy::{in_force, method, rungs};
 use stickslip_core::{AssumedMode, InterfaceProblem, Strategy, Trials};
-use stickslip_scene::{joined, sig4};
+use stickslip_scene::sig4;
 
 /// Negative eigenvalues up to this fraction of the largest one may be due to rounding.
 const SMALL: f64 = 1e-2;
@@ -292,12 +292,5 @@ fn does<'a>(answer: &Answer, name: &impl Fn(usize) -> &'a str) -> String {
     if answer.nodes.len() > MOST_NAMED {
         return answer.letters();
     }
-    joined(
-        answer
-            .nodes
-            .iter()
-            .enumerate()
-            .map(|(place, node)| format!("{} {}", name(place), answer_words(node))),
-        ", ",
-    )
+    modes_words(answer, name)
 }

@@ -8,35 +8,24 @@ use stickslip_core::{Body, BodyKind, Event, Model, SurfaceElement};
 /// A point in the scene or on the sheet.
 pub type Point = [f64; 2];
 
-/// How a scene in space is drawn.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Projection {
-    /// x to the right, z upwards, y to the upper right.
-    #[default]
-    Oblique,
-    /// Along z: x to the right, y upwards.
-    Top,
-    /// Along y: x to the right, z upwards.
-    Side,
+stickslip_core::words! {
+    /// How a scene in space is drawn.
+    #[derive(Default)]
+    pub enum Projection, ALL, word {
+        /// x to the right, z upwards, y to the upper right.
+        #[default]
+        Oblique "oblique",
+        /// Along z: x to the right, y upwards.
+        Top "top",
+        /// Along y: x to the right, z upwards.
+        Side "side",
+    }
 }
 
 impl Projection {
     /// The next projection.
     pub fn next(self) -> Projection {
-        match self {
-            Projection::Oblique => Projection::Top,
-            Projection::Top => Projection::Side,
-            Projection::Side => Projection::Oblique,
-        }
-    }
-
-    /// The word for it.
-    pub fn word(self) -> &'static str {
-        match self {
-            Projection::Oblique => "oblique",
-            Projection::Top => "top",
-            Projection::Side => "side",
-        }
+        Projection::ALL[(self as usize + 1) % Projection::ALL.len()]
     }
 
     /// A point or vector on the sheet; in the plane its x and y.

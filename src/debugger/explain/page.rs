@@ -227,7 +227,7 @@ impl DiagnosisPage {
         DiagnosisPage {
             what,
             why: why.into_iter().map(|fact| fact.text).collect(),
-            below: Part::BELOW.into_iter().filter_map(of).collect(),
+            below: Part::ALL[1..].iter().copied().filter_map(of).collect(),
             found,
             ..DiagnosisPage::default()
         }

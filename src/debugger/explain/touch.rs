@@ -8,7 +8,7 @@
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use stickslip_core::{
-    Event, Intervention, Mode, Model, Outcome, RunEnd, State, Stepper, Touch, Until,
+    ContactState, Event, Intervention, Mode, Model, Outcome, RunEnd, State, Stepper, Touch, Until,
 };
 
 /// Smallest reported difference of forces, relative to the largest force.
@@ -122,16 +122,9 @@ impl TouchWatch {
     }
 }
 
-/// Forces on the slave nodes: F_n n + F_t t, with t = n turned 90 degrees anticlockwise.
+/// Forces on the slave nodes (Cartesian).
 fn forces(state: &State) -> Vec<[f64; 2]> {
-    state
-        .nodes
-        .iter()
-        .map(|node| {
-            let [x, y] = node.normal;
-            [node.f_n * x - node.f_t * y, node.f_n * y + node.f_t * x]
-        })
-        .collect()
+    state.nodes.iter().map(ContactState::force).collect()
 }
 
 /// The largest difference, relative to the largest force in `ours`.

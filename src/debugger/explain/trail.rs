@@ -1,54 +1,22 @@
 //! The last iterations of one contact: its force in the Coulomb cone, and T_max as a map from the value used to the value found.
 
 use stickslip_core::plane::range;
-use stickslip_core::{Event, Friction, Mode};
+use stickslip_core::{ContactRecord, Event, Friction, Mode};
 
 /// Maximum number of iterations in a trail.
 pub const LONGEST: usize = 12;
 
-/// A contact in one minor iteration.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TrailPoint {
-    /// Mode of the solve.
-    pub mode: Mode,
-    /// Normal force; compression positive.
-    pub f_n: f64,
-    /// Tangential force.
-    pub f_t: f64,
-    /// T_max after the solve.
-    pub t_max: f64,
-    /// T_max used in the solve.
-    pub t_max_used: f64,
-    /// In space, the directions of F_t and of the slip (radians).
-    pub directions: Option<[f64; 2]>,
-}
-
-impl TrailPoint {
-    /// The components of F_t along t and n × t in space.
-    pub fn shear(&self) -> Option<[f64; 2]> {
-        let [direction, _] = self.directions?;
-        Some([self.f_t * direction.cos(), self.f_t * direction.sin()])
-    }
-}
-
 /// The iterations of a slave node in the attempt of the last event, oldest first, at most [`LONGEST`]; `events` runs backwards.
-pub fn trail<'a>(events: impl Iterator<Item = &'a Event>, slave: usize) -> Vec<TrailPoint> {
+pub fn trail<'a>(events: impl Iterator<Item = &'a Event>, slave: usize) -> Vec<ContactRecord> {
     let mut attempt = None;
-    let mut points: Vec<TrailPoint> = events
+    let mut points: Vec<ContactRecord> = events
         .take_while(|event| {
             let at = (event.position.increment, event.position.attempt);
             *attempt.get_or_insert(at) == at
         })
         .map_while(|event| event.nodes.get(slave))
         .take(LONGEST)
-        .map(|record| TrailPoint {
-            mode: record.decision.before,
-            f_n: record.f_n,
-            f_t: record.f_t,
-            t_max: record.t_max,
-            t_max_used: record.t_max_used,
-            directions: record.directions,
-        })
+        .copied()
         .collect();
     points.retain(|point| point.f_n.is_finite() && point.f_t.is_finite());
     points.reverse();
@@ -70,8 +38,8 @@ pub struct Cone {
 
 impl Cone {
     /// A cone around these forces; `None` if none is larger than `drawn`.
-    pub fn new(trail: &[TrailPoint], friction: &Friction, drawn: f64) -> Option<Cone> {
-        let largest = |of: &dyn Fn(&TrailPoint) -> f64| trail.iter().map(of).fold(0.0, f64::max);
+    pub fn new(trail: &[ContactRecord], friction: &Friction, drawn: f64) -> Option<Cone> {
+        let largest = |of: &dyn Fn(&ContactRecord) -> f64| trail.iter().map(of).fold(0.0, f64::max);
         let mu = friction.coefficient();
         let (f_n, f_t) = (largest(&|p| p.f_n), largest(&|p| p.f_t.abs()));
         let least = trail.iter().map(|p| p.f_n).fold(0.0, f64::min);
@@ -130,8 +98,10 @@ pub struct Cobweb {
 }
 
 /// The cobweb of a trail; `scale` is that of the forces.
-pub fn cobweb(trail: &[TrailPoint], scale: f64) -> Cobweb {
-    let points = trail.iter().filter(|point| point.mode == Mode::Sliding);
+pub fn cobweb(trail: &[ContactRecord], scale: f64) -> Cobweb {
+    let points = trail
+        .iter()
+        .filter(|point| point.decision.before == Mode::Sliding);
     let steps: Vec<[f64; 2]> = points
         .map(|point| [point.t_max_used, point.t_max])
         .filter(|step| step.iter().all(|value| value.is_finite()))
@@ -161,10 +131,10 @@ pub fn cobweb(trail: &[TrailPoint], scale: f64) -> Cobweb {
 }
 
 /// The factor by which the change of T_max shrinks (or grows) per iteration, from the last three values; `None` if unknown.
-pub fn factor(trail: &[TrailPoint]) -> Option<f64> {
+pub fn factor(trail: &[ContactRecord]) -> Option<f64> {
     let [.., one, two] = trail else { return None };
     let (before, now) = (one.t_max - one.t_max_used, two.t_max - two.t_max_used);
-    let slide = one.mode == Mode::Sliding && two.mode == Mode::Sliding;
+    let slide = [one, two].map(|point| point.decision.before) == [Mode::Sliding; 2];
     (slide && before.abs() > 0.0)
         .then_some(now / before)
         .filter(|factor| factor.is_finite())
@@ -173,15 +143,16 @@ pub fn factor(trail: &[TrailPoint]) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use stickslip_core::ContactState;
 
-    fn point(t_max_used: f64, t_max: f64) -> TrailPoint {
-        TrailPoint {
-            mode: Mode::Sliding,
+    fn point(t_max_used: f64, t_max: f64) -> ContactRecord {
+        let mode = Mode::Sliding;
+        ContactRecord {
             f_n: 1.0,
             f_t: 0.2,
             t_max,
             t_max_used,
-            directions: None,
+            ..ContactRecord::from_modes(mode, mode, &ContactState::default())
         }
     }
 
@@ -224,7 +195,7 @@ mod tests {
         let high = cone.clone().to_scale((100.0, 300.0), &friction);
         assert_eq!(high.edge[1][0], -high.f_t);
         assert!((high.edge[1][1] - (high.f_t - 0.5)).abs() < 1e-9);
-        let none = TrailPoint {
+        let none = ContactRecord {
             f_n: 0.0,
             f_t: 0.0,
             ..point(0.0, 0.0)

@@ -18,7 +18,7 @@ use std::f64::consts::TAU;
 use stickslip_core::ContactRecord;
 use stickslip_core::contact::projection::tangent;
 use stickslip_debugger::explain::tested;
-use stickslip_debugger::explain::trail::{self, Cobweb, Cone, TrailPoint};
+use stickslip_debugger::explain::trail::{self, Cobweb, Cone};
 use stickslip_scene::number::{UNREPORTED, sig2, sig4};
 use unicode_width::UnicodeWidthStr;
 
@@ -117,7 +117,7 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
 }
 
 /// The iterations of a slave node up to the shown one.
-fn trail(slave: usize, view: &View) -> Vec<TrailPoint> {
+fn trail(slave: usize, view: &View) -> Vec<ContactRecord> {
     let solved = view.frames[..=view.cursor]
         .iter()
         .rev()
@@ -220,7 +220,7 @@ fn draw_cone(
     buffer: &mut Buffer,
     area: Rect,
     cone: Option<&Cone>,
-    trail: &[TrailPoint],
+    trail: &[ContactRecord],
     app: &App,
 ) {
     let theme = &app.theme;
@@ -256,7 +256,7 @@ fn draw_cone(
 fn draw_trail(
     buffer: &mut Buffer,
     canvas: &mut Canvas,
-    trail: &[TrailPoint],
+    trail: &[ContactRecord],
     dots: &[Dot],
     theme: &Theme,
 ) {
@@ -265,9 +265,14 @@ fn draw_trail(
     let last = dots.len().saturating_sub(1);
     for (k, (point, at)) in trail.iter().zip(dots).enumerate() {
         let (glyph, style) = if k == last {
-            ("●", theme.mode(point.mode).add_modifier(Modifier::BOLD))
+            (
+                "●",
+                theme
+                    .mode(point.decision.before)
+                    .add_modifier(Modifier::BOLD),
+            )
         } else {
-            ("○", theme.mode(point.mode))
+            ("○", theme.mode(point.decision.before))
         };
         canvas.mark(buffer, *at, glyph, style);
     }
@@ -277,13 +282,13 @@ fn draw_trail(
 fn circle(
     buffer: &mut Buffer,
     area: Rect,
-    (trail, record): (&[TrailPoint], &ContactRecord),
+    (trail, record): (&[ContactRecord], &ContactRecord),
     app: &App,
 ) {
     let theme = &app.theme;
     let area = headed(buffer, area, "F_t in the friction circle", app);
     let radius = record.t_max.abs();
-    let forces: Vec<[f64; 2]> = trail.iter().filter_map(TrailPoint::shear).collect();
+    let forces: Vec<[f64; 2]> = trail.iter().filter_map(ContactRecord::shear).collect();
     let sizes = trail.iter().map(|point| point.f_t).chain([radius]);
     let reach = 1.15 * sizes.filter(|size| size.is_finite()).fold(0.0, f64::max);
     if forces.is_empty() || reach <= 0.0 {
@@ -316,7 +321,7 @@ fn below(buffer: &mut Buffer, frame: ChartFrame, [low, high]: [f64; 2], name: &s
 }
 
 /// T_max found over T_max used: where the path meets the diagonal, T_max has settled.
-fn cobweb(buffer: &mut Buffer, area: Rect, trail: &[TrailPoint], app: &App, view: &View) {
+fn cobweb(buffer: &mut Buffer, area: Rect, trail: &[ContactRecord], app: &App, view: &View) {
     let theme = &app.theme;
     let factor = trail::factor(trail);
     let heading = match factor {

@@ -4,8 +4,8 @@ use super::export_state::ExportState;
 use super::timeline::marker;
 use crate::RoundOff;
 use crate::explain::names;
-use crate::explain::trail::{self, Cone, TrailPoint};
-use stickslip_core::{MonitorQuantity, counted};
+use crate::explain::trail::{self, Cone};
+use stickslip_core::{ContactRecord, MonitorQuantity, counted};
 use stickslip_scene::{sig4, sig6};
 use stickslip_study::drawn::PlotError;
 use stickslip_study::linear_axis;
@@ -207,7 +207,7 @@ pub(super) fn cone(sheet: &mut Sheet, shown: &ExportState, high: f64) -> Result<
 }
 
 /// The trail of forces.
-fn points(sheet: &mut Sheet, trail: &[TrailPoint], map: &impl Fn([f64; 2]) -> (f64, f64)) {
+fn points(sheet: &mut Sheet, trail: &[ContactRecord], map: &impl Fn([f64; 2]) -> (f64, f64)) {
     let dots: Vec<(f64, f64)> = trail
         .iter()
         .map(|point| map([point.f_t, point.f_n]))
@@ -215,6 +215,11 @@ fn points(sheet: &mut Sheet, trail: &[TrailPoint], map: &impl Fn([f64; 2]) -> (f
     sheet.line(&dots, 1.2, GREY);
     let last = trail.len().saturating_sub(1);
     for (k, (point, at)) in trail.iter().zip(&dots).enumerate() {
-        marker(sheet, *at, point.mode, if k == last { 6.0 } else { 3.5 });
+        marker(
+            sheet,
+            *at,
+            point.decision.before,
+            if k == last { 6.0 } else { 3.5 },
+        );
     }
 }

@@ -265,16 +265,14 @@ impl<'d> DeckShape<'d> {
 
     /// The elements of a body, by index.
     pub fn elements(&self, body: usize) -> impl Iterator<Item = usize> {
-        let elements = self.deck.elements.iter().enumerate();
-        let own = elements.filter(move |(_, of)| self.body_of[of.nodes[0]] == Some(body));
-        own.map(|(k, _)| k)
+        let of = |element: usize| self.body_of[self.deck.elements[element].nodes[0]];
+        (0..self.deck.elements.len()).filter(move |element| of(*element) == Some(body))
     }
 
     /// The elements of a group, by index.
     pub fn group_elements(&self, group: usize) -> impl Iterator<Item = usize> {
-        let elements = self.deck.elements.iter().enumerate();
-        let own = elements.filter(move |(_, of)| self.group(of.nodes[0]) == Some(group));
-        own.map(|(k, _)| k)
+        let bodies = (0..self.bodies.len()).filter(move |body| self.group_of[*body] == group);
+        bodies.flat_map(|body| self.elements(body))
     }
 
     /// Extent of a group along a direction.
