@@ -36,9 +36,19 @@ struct AssembledElement {
     history: Range<usize>,
 }
 
+/// The tangent of an element that has degrees of freedom without an equation.
+struct HeldTangent {
+    /// Its number among all elements.
+    element: usize,
+    /// Row by row; empty if it has not been computed since the last assembly.
+    values: Vec<f64>,
+}
+
 /// All elements of all bodies.
 pub struct Assembly {
     elements: Vec<AssembledElement>,
+    /// Those whose prescribed degrees of freedom can move.
+    held: Vec<HeldTangent>,
     /// Bodies given by a matrix.
     matrices: Vec<matrix::MatrixElement>,
     /// Whether only the upper half of the stiffness is assembled.
@@ -110,6 +120,7 @@ impl Assembly {
     pub fn empty(executor: Arc<dyn Executor>) -> Self {
         Assembly {
             elements: Vec::new(),
+            held: Vec::new(),
             matrices: Vec::new(),
             half: false,
             history_len: 0,
@@ -243,6 +254,17 @@ impl Assembly {
         for matrix in &mut self.matrices {
             matrix.bind(dofs, pattern);
         }
+        let held = self
+            .elements
+            .iter()
+            .enumerate()
+            .filter(|(_, placed)| placed.held);
+        self.held = held
+            .map(|(element, _)| HeldTangent {
+                element,
+                values: Vec::new(),
+            })
+            .collect();
     }
 
     /// All elements.
@@ -302,6 +324,7 @@ impl Assembly {
         out.size.fill(0.0);
         out.values.fill(0.0);
         out.coupling.fill(0.0);
+        self.held.iter_mut().for_each(|held| held.values.clear());
         let work = AssemblyWork {
             executor: &*self.executor,
             elements: &self.elements,
@@ -355,22 +378,29 @@ impl Assembly {
         }
     }
 
-    /// Forces at the equations due to `step` of the degrees of freedom without an equation, as in [`Assembly::assemble`].
+    /// Forces at the equations due to `step` of the degrees of freedom without an equation, as in [`Assembly::assemble`], which
+    /// was called last with the same displacements.
     pub fn couple(&mut self, dofs: &Dofs, moved: AssemblyMotion<'_>, coupling: &mut [f64]) {
         coupling.fill(0.0);
-        let moves = |dof: &usize| moved.step[*dof] != 0.0;
-        let held = self.elements.iter().filter(|p| p.held);
-        for placed in held.filter(|p| p.dofs.iter().any(moves)) {
-            let room = &mut self.room;
-            room.compute(placed, &moved, |past, u, force, tangent| {
-                tangent.fill(0.0);
-                placed.element.add(past, u, force, tangent)
-            });
-            if room.answers {
-                let tangent = &mut room.tangent[..placed.dofs.len().pow(2)];
-                placed.element.mirror(tangent);
-                placed.couple(dofs, tangent, moved.step, coupling, 0);
+        for held in &mut self.held {
+            let placed = &self.elements[held.element];
+            if placed.dofs.iter().all(|&dof| moved.step[dof] == 0.0) {
+                continue;
             }
+            if held.values.is_empty() {
+                let room = &mut self.room;
+                room.compute(placed, &moved, |past, u, force, tangent| {
+                    tangent.fill(0.0);
+                    placed.element.add(past, u, force, tangent)
+                });
+                let tangent = &mut room.tangent[..placed.dofs.len().pow(2)];
+                match room.answers {
+                    true => placed.element.mirror(tangent),
+                    false => tangent.fill(0.0),
+                }
+                held.values.extend_from_slice(tangent);
+            }
+            placed.couple(dofs, &held.values, moved.step, coupling, 0);
         }
         for matrix in &self.matrices {
             matrix.couple(dofs, moved.step, coupling);

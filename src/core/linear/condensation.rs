@@ -64,6 +64,8 @@ pub struct Condensation {
     /// The matrix to factor.
     inner: Vec<f64>,
     dense: DenseFactors,
+    /// M: the masters' shares in the motions of the slave nodes, as (row of u_m, row of u_s, weight).
+    shares: Vec<(usize, usize, f64)>,
     /// Out-of-balance force of all equations.
     residual: Vec<f64>,
     /// u_c at z = 0; with [`CondensationPath::Direct`], r', then u_m at v = 0.
@@ -132,6 +134,7 @@ impl Condensation {
             matrix: vec![0.0; c * c],
             dense: DenseFactors::new(solved, z)?,
             inner: vec![0.0; solved * solved],
+            shares: Vec::new(),
             residual: vec![0.0; n],
             start: vec![0.0; c],
             motions: vec![0.0; c * z],
@@ -243,17 +246,21 @@ impl Condensation {
     fn transform(&mut self, interfaces: &[Interface], frames: &[[[f64; 2]; 2]]) {
         let c = self.equations.len();
         let m = c - 2 * interfaces.len();
-        for (s, (interface, frame)) in interfaces.iter().zip(frames).enumerate() {
-            let (masters, slaves) = self.matrix.split_at_mut(m * c);
-            let own = &mut slaves[2 * s * c..2 * (s + 1) * c];
-            for link in &interface.links[2..] {
-                if let Some(j) = link.unknown {
-                    let from = &own[link.axis * c..(link.axis + 1) * c];
-                    for (to, from) in masters[j * c..(j + 1) * c].iter_mut().zip(from) {
-                        *to += link.weight * from;
-                    }
-                }
+        self.shares.clear();
+        for (s, interface) in interfaces.iter().enumerate() {
+            let masters = interface.links[2..].iter();
+            let shares =
+                masters.filter_map(|link| Some((link.unknown?, 2 * s + link.axis, link.weight)));
+            self.shares.extend(shares);
+        }
+        let (masters, slaves) = self.matrix.split_at_mut(m * c);
+        for &(j, own, weight) in &self.shares {
+            let from = &slaves[own * c..(own + 1) * c];
+            for (to, from) in masters[j * c..(j + 1) * c].iter_mut().zip(from) {
+                *to += weight * from;
             }
+        }
+        for (own, frame) in slaves.chunks_exact_mut(2 * c.max(1)).zip(frames) {
             let (x, y) = own.split_at_mut(c);
             for (x, y) in x.iter_mut().zip(y) {
                 (*x, *y) = (-along(frame[0], *x, *y), -along(frame[1], *x, *y));
@@ -262,16 +269,10 @@ impl Condensation {
         let columns = self.matrix.chunks_exact_mut(c.max(1));
         for column in columns.chain(std::iter::once(&mut self.start[..])) {
             let (masters, slaves) = column.split_at_mut(m);
-            for ((interface, frame), own) in interfaces
-                .iter()
-                .zip(frames)
-                .zip(slaves.chunks_exact_mut(2))
-            {
-                for link in &interface.links[2..] {
-                    if let Some(j) = link.unknown {
-                        masters[j] += link.weight * own[link.axis];
-                    }
-                }
+            for &(j, own, weight) in &self.shares {
+                masters[j] += weight * slaves[own];
+            }
+            for (own, frame) in slaves.chunks_exact_mut(2).zip(frames) {
                 let [x, y] = [own[0], own[1]];
                 (own[0], own[1]) = (-along(frame[0], x, y), -along(frame[1], x, y));
             }
