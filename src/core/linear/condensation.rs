@@ -64,8 +64,9 @@ pub struct Condensation {
     /// The matrix to factor.
     inner: Vec<f64>,
     dense: DenseFactors,
-    /// M: the masters' shares in the motions of the slave nodes, as (row of u_m, row of u_s, weight).
-    shares: Vec<(usize, usize, f64)>,
+    /// The entries of M as (row of u_m, row of u_s, weight): pairs for x and y, of which the rows of x are listed, and others.
+    pairs: Vec<(usize, usize, f64)>,
+    singles: Vec<(usize, usize, f64)>,
     /// Out-of-balance force of all equations.
     residual: Vec<f64>,
     /// u_c at z = 0; with [`CondensationPath::Direct`], r', then u_m at v = 0.
@@ -82,8 +83,9 @@ struct BodyGroup {
     /// Their equations, and their range of the stiffness values.
     equations: Range<usize>,
     values: Range<usize>,
-    /// Their unknowns, as indices into those of the interface.
+    /// Their unknowns, as indices into those of the interface; the same as ranges.
     unknowns: Vec<usize>,
+    runs: Vec<Range<usize>>,
     /// S, column by column, and r̃.
     schur: Vec<f64>,
     load: Vec<f64>,
@@ -134,7 +136,8 @@ impl Condensation {
             matrix: vec![0.0; c * c],
             dense: DenseFactors::new(solved, z)?,
             inner: vec![0.0; solved * solved],
-            shares: Vec::new(),
+            pairs: Vec::new(),
+            singles: Vec::new(),
             residual: vec![0.0; n],
             start: vec![0.0; c],
             motions: vec![0.0; c * z],
@@ -246,15 +249,13 @@ impl Condensation {
     fn transform(&mut self, interfaces: &[Interface], frames: &[[[f64; 2]; 2]]) {
         let c = self.equations.len();
         let m = c - 2 * interfaces.len();
-        self.shares.clear();
-        for (s, interface) in interfaces.iter().enumerate() {
-            let masters = interface.links[2..].iter();
-            let shares =
-                masters.filter_map(|link| Some((link.unknown?, 2 * s + link.axis, link.weight)));
-            self.shares.extend(shares);
-        }
+        self.list_shares(interfaces);
         let (masters, slaves) = self.matrix.split_at_mut(m * c);
-        for &(j, own, weight) in &self.shares {
+        let of_pairs = self
+            .pairs
+            .iter()
+            .flat_map(|&(j, own, w)| [(j, own, w), (j + 1, own + 1, w)]);
+        for (j, own, weight) in of_pairs.chain(self.singles.iter().copied()) {
             let from = &slaves[own * c..(own + 1) * c];
             for (to, from) in masters[j * c..(j + 1) * c].iter_mut().zip(from) {
                 *to += weight * from;
@@ -269,12 +270,35 @@ impl Condensation {
         let columns = self.matrix.chunks_exact_mut(c.max(1));
         for column in columns.chain(std::iter::once(&mut self.start[..])) {
             let (masters, slaves) = column.split_at_mut(m);
-            for &(j, own, weight) in &self.shares {
+            for &(j, own, weight) in &self.pairs {
+                let (to, from) = (&mut masters[j..j + 2], &slaves[own..own + 2]);
+                to[0] += weight * from[0];
+                to[1] += weight * from[1];
+            }
+            for &(j, own, weight) in &self.singles {
                 masters[j] += weight * slaves[own];
             }
             for (own, frame) in slaves.chunks_exact_mut(2).zip(frames) {
                 let [x, y] = [own[0], own[1]];
                 (own[0], own[1]) = (-along(frame[0], x, y), -along(frame[1], x, y));
+            }
+        }
+    }
+
+    /// Lists the entries of M.
+    fn list_shares(&mut self, interfaces: &[Interface]) {
+        (self.pairs.clear(), self.singles.clear());
+        for (s, interface) in interfaces.iter().enumerate() {
+            for pair in interface.links[2..].chunks_exact(2) {
+                let weight = pair[0].weight;
+                match [pair[0].unknown, pair[1].unknown] {
+                    [Some(x), Some(y)] if y == x + 1 => self.pairs.push((x, 2 * s, weight)),
+                    both => {
+                        let axes = both.into_iter().zip(2 * s..);
+                        let known = axes.filter_map(|(j, own)| Some((j?, own, weight)));
+                        self.singles.extend(known);
+                    }
+                }
             }
         }
     }
@@ -287,8 +311,14 @@ impl Condensation {
             let columns = part.schur.chunks_exact(part.unknowns.len().max(1));
             for (&j, column) in part.unknowns.iter().zip(columns) {
                 let to = &mut self.matrix[j * c..(j + 1) * c];
-                for (&i, schur) in part.unknowns.iter().zip(column) {
-                    to[i] += schur;
+                let mut from = column;
+                for run in &part.runs {
+                    let (own, rest) = from.split_at(run.len());
+                    to[run.clone()]
+                        .iter_mut()
+                        .zip(own)
+                        .for_each(|(to, own)| *to += own);
+                    from = rest;
                 }
             }
         }
@@ -476,6 +506,10 @@ impl BodyGroup {
                 &positions[equations.clone()],
             )?,
             values,
+            runs: unknowns
+                .chunk_by(|a, b| *b == a + 1)
+                .map(|run| run[0]..run[0] + run.len())
+                .collect(),
             unknowns,
             schur: vec![0.0; c * c],
             load: vec![0.0; c],

@@ -21,6 +21,7 @@ use crate::linear::partners::{join_partners, turn_points};
 use crate::linear::point_forces::PointForces;
 use crate::linear::sizes::Sizes;
 use crate::model::Geometry;
+use crate::plane::{larger, max_abs};
 use crate::{
     CondensedSystem, ContactState, ElementOutput, Equation, Estimate, LinearisationPoint, Model,
     NodeIncrement, NodeKinematics, Norms, Settings, SolveResult, Work,
@@ -186,7 +187,7 @@ impl System {
                 model.nodes[n].at[0] + u[first],
                 model.nodes[n].at[1] + u[first + 1],
             ];
-            self.reach = self.reach.max(position[0].abs()).max(position[1].abs());
+            self.reach = larger(self.reach, max_abs(&*position));
         }
     }
 
