@@ -187,7 +187,7 @@ impl System {
                 model.nodes[n].at[0] + u[first],
                 model.nodes[n].at[1] + u[first + 1],
             ];
-            self.reach = larger(self.reach, max_abs(&*position));
+            self.reach = larger(self.reach, max_abs(*position));
         }
     }
 
@@ -386,9 +386,13 @@ impl System {
                 self.executor.clone(),
             )?);
         }
-        let Some(bodies) = &self.bodies else {
+        let Some(bodies) = &mut self.bodies else {
             return Ok(());
         };
+        let changed = bodies.choose(model, &self.interfaces) || self.layout != Some(Layout::Bodies);
+        if changed {
+            self.interfaces.iter_mut().for_each(|i| i.placed = false);
+        }
         if self.layout != Some(Layout::Bodies) {
             self.taken.clear();
             let parts = bodies.parts();
@@ -399,7 +403,6 @@ impl System {
                 buffer.resize(model.dofs.equations, 0.0);
             }
             self.layout = Some(Layout::Bodies);
-            self.interfaces.iter_mut().for_each(|i| i.placed = false);
         }
         for interface in &mut self.interfaces {
             let place = |row, column| bodies.place(row, column);
