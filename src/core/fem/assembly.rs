@@ -36,19 +36,12 @@ struct AssembledElement {
     history: Range<usize>,
 }
 
-/// The tangent of an element that has degrees of freedom without an equation.
-struct HeldTangent {
-    /// Its number among all elements.
-    element: usize,
-    /// Row by row; empty if it has not been computed since the last assembly.
-    values: Vec<f64>,
-}
-
 /// All elements of all bodies.
 pub struct Assembly {
     elements: Vec<AssembledElement>,
-    /// Those whose prescribed degrees of freedom can move.
-    held: Vec<HeldTangent>,
+    /// Those with degrees of freedom without an equation, by number, with their tangents row by row; empty if not computed since
+    /// the last assembly.
+    held: Vec<(usize, Vec<f64>)>,
     /// Bodies given by a matrix.
     matrices: Vec<matrix::MatrixElement>,
     /// Whether only the upper half of the stiffness is assembled.
@@ -254,17 +247,8 @@ impl Assembly {
         for matrix in &mut self.matrices {
             matrix.bind(dofs, pattern);
         }
-        let held = self
-            .elements
-            .iter()
-            .enumerate()
-            .filter(|(_, placed)| placed.held);
-        self.held = held
-            .map(|(element, _)| HeldTangent {
-                element,
-                values: Vec::new(),
-            })
-            .collect();
+        let held = (0..self.elements.len()).filter(|&k| self.elements[k].held);
+        self.held = held.map(|k| (k, Vec::new())).collect();
     }
 
     /// All elements.
@@ -324,7 +308,7 @@ impl Assembly {
         out.size.fill(0.0);
         out.values.fill(0.0);
         out.coupling.fill(0.0);
-        self.held.iter_mut().for_each(|held| held.values.clear());
+        self.held.iter_mut().for_each(|(_, known)| known.clear());
         let work = AssemblyWork {
             executor: &*self.executor,
             elements: &self.elements,
@@ -382,12 +366,12 @@ impl Assembly {
     /// was called last with the same displacements.
     pub fn couple(&mut self, dofs: &Dofs, moved: AssemblyMotion<'_>, coupling: &mut [f64]) {
         coupling.fill(0.0);
-        for held in &mut self.held {
-            let placed = &self.elements[held.element];
+        for (number, known) in &mut self.held {
+            let placed = &self.elements[*number];
             if placed.dofs.iter().all(|&dof| moved.step[dof] == 0.0) {
                 continue;
             }
-            if held.values.is_empty() {
+            if known.is_empty() {
                 let room = &mut self.room;
                 room.compute(placed, &moved, |past, u, force, tangent| {
                     tangent.fill(0.0);
@@ -398,9 +382,9 @@ impl Assembly {
                     true => placed.element.mirror(tangent),
                     false => tangent.fill(0.0),
                 }
-                held.values.extend_from_slice(tangent);
+                known.extend_from_slice(tangent);
             }
-            placed.couple(dofs, &held.values, moved.step, coupling, 0);
+            placed.couple(dofs, known, moved.step, coupling, 0);
         }
         for matrix in &self.matrices {
             matrix.couple(dofs, moved.step, coupling);

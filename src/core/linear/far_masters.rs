@@ -199,3 +199,68 @@ impl FarMasters {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::executor::SequentialExecutor;
+    use nalgebra::{DMatrix, DVector};
+
+    /// Two bodies with 7 and 5 unknowns, which alternate, and stiffnesses with large entries off the diagonal.
+    fn bodies() -> [(Vec<usize>, DMatrix<f64>); 2] {
+        [7, 5].map(|count| {
+            let entry = |i: usize, j: usize| (1.3 * (i * j + i + j) as f64).sin();
+            let stiffness = DMatrix::from_fn(count, count, |i, j| match i == j {
+                true => 5.0 + i as f64,
+                false => entry(i, j),
+            });
+            let unknowns = (0..12).filter(|k| (k % 12 < 10 && k % 2 == 1) == (count == 5));
+            (unknowns.collect(), stiffness)
+        })
+    }
+
+    #[test]
+    fn what_is_eliminated_moves_as_in_the_whole_system_however_the_choice_changes() {
+        let bodies = bodies();
+        let mut whole = DMatrix::zeros(12, 12);
+        for (unknowns, stiffness) in &bodies {
+            for (i, &row) in unknowns.iter().enumerate() {
+                for (j, &column) in unknowns.iter().enumerate() {
+                    whole[(row, column)] = stiffness[(i, j)];
+                }
+            }
+        }
+        let load = DVector::from_fn(12, |i, _| (0.7 * i as f64).cos());
+        let exact = whole.lu().solve(&load).unwrap();
+        let mut masters = FarMasters::new(12).unwrap();
+        let choices: [&[usize]; 4] = [&[], &[0, 3, 4, 11], &[1, 2, 3], &[0, 1, 2, 5, 7, 9, 10]];
+        for far in choices {
+            let is_near: Vec<bool> = (0..12).map(|k| !far.contains(&k)).collect();
+            assert_eq!(masters.choose(&is_near), !far.is_empty());
+            assert!(!masters.choose(&is_near), "the same choice");
+            let parts = bodies.iter();
+            let parts = parts.map(|(unknowns, stiffness)| (&unknowns[..], stiffness.as_slice()));
+            let norm = masters.eliminate(parts, &SequentialExecutor).unwrap();
+            assert!(norm < 1e3, "{norm}");
+            let n = 12 - far.len();
+            let mut reduced = vec![0.0; n];
+            masters.condense(load.as_slice(), &mut reduced).unwrap();
+            let stiffness = DMatrix::from_column_slice(n, n, masters.stiffness());
+            let near = stiffness.lu().solve(&DVector::from_vec(reduced)).unwrap();
+            let mut all = [0.0; 12];
+            masters.recover(near.as_slice(), &mut all);
+            let error = (DVector::from_row_slice(&all) - &exact).amax();
+            assert!(error < 1e-12, "{far:?}: {error}");
+        }
+    }
+
+    #[test]
+    fn far_masters_that_nothing_holds_are_an_error_or_have_a_large_norm() {
+        let stiffness = [1.0, -1.0, 0.0, -1.0, 1.0, 0.0, 0.0, 0.0, 1.0];
+        let mut masters = FarMasters::new(3).unwrap();
+        masters.choose(&[false, false, true]);
+        let part = std::iter::once((&[0, 1, 2][..], &stiffness[..]));
+        let norm = masters.eliminate(part, &SequentialExecutor);
+        assert!(norm.is_err() || norm.is_ok_and(|norm| norm > 1e12));
+    }
+}
