@@ -27,14 +27,11 @@ pub(super) fn fill_probe(probe: &mut [f64]) {
 
 /// Largest magnitude of some numbers; infinite if one is not finite (`max` would ignore NaN).
 pub fn largest(values: impl IntoIterator<Item: Borrow<f64>>) -> f64 {
-    values.into_iter().fold(0.0_f64, |most, value| {
-        let value = value.borrow();
-        if value.is_finite() {
-            most.max(value.abs())
-        } else {
-            f64::INFINITY
-        }
-    })
+    // The bits of magnitudes are ordered as the magnitudes are, with infinity and NaN last.
+    let bits = values
+        .into_iter()
+        .map(|value| value.borrow().abs().to_bits());
+    f64::from_bits(bits.fold(0, u64::max).min(f64::INFINITY.to_bits()))
 }
 
 /// Whether two vectors of the same length are equal; compares all entries, which is faster than stopping at the first difference.

@@ -171,16 +171,31 @@ impl Pattern {
         y.fill(0.0);
         for (col, &xc) in x.iter().enumerate() {
             let range = self.col_ptr[col]..self.col_ptr[col + 1];
-            let mut own = 0.0;
-            for (&value, &row) in values[range.clone()].iter().zip(&self.row_idx[range]) {
+            let (values, rows) = (&values[range.clone()], &self.row_idx[range]);
+            for (&value, &row) in values.iter().zip(rows) {
                 y[row] += term(value, xc);
-                if half && row != col {
-                    own += term(value, x[row]);
-                }
             }
-            y[col] += own;
+            if half {
+                let of_others = |value, row| if row == col { 0.0 } else { term(value, x[row]) };
+                y[col] += sum_of(values, rows, of_others);
+            }
         }
     }
+}
+
+/// Sum of the terms of values and their rows, in four parts that do not wait for each other.
+fn sum_of(values: &[f64], rows: &[usize], term: impl Fn(f64, usize) -> f64) -> f64 {
+    const PARTS: usize = 4;
+    let mut sums = [0.0; PARTS];
+    let (values, rows) = (values.chunks_exact(PARTS), rows.chunks_exact(PARTS));
+    let rest = values.remainder().iter().zip(rows.remainder());
+    let rest: f64 = rest.map(|(&value, &row)| term(value, row)).sum();
+    for (values, rows) in values.zip(rows) {
+        for ((sum, &value), &row) in sums.iter_mut().zip(values).zip(rows) {
+            *sum += term(value, row);
+        }
+    }
+    sums.iter().sum::<f64>() + rest
 }
 
 /// Groups values into lists by number, in order of appearance; also returns the start of each list.

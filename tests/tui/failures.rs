@@ -40,6 +40,7 @@ const CASES: [Case; 14] = [
             ("friction.angle", "5"),
             ("history.increment", "0.5"),
             ("settings.factor", "each"),
+            ("settings.majors", "100"),
             ("settings.strategy", "table2"),
         ],
         is_meant: |failure| matches!(failure, Failure::MajorCycle(_)),

@@ -39,6 +39,9 @@ struct AssembledElement {
 /// All elements of all bodies.
 pub struct Assembly {
     elements: Vec<AssembledElement>,
+    /// Those with degrees of freedom without an equation, by number, with their tangents row by row; empty if not computed since
+    /// the last assembly.
+    held: Vec<(usize, Vec<f64>)>,
     /// Bodies given by a matrix.
     matrices: Vec<matrix::MatrixElement>,
     /// Whether only the upper half of the stiffness is assembled.
@@ -110,6 +113,7 @@ impl Assembly {
     pub fn empty(executor: Arc<dyn Executor>) -> Self {
         Assembly {
             elements: Vec::new(),
+            held: Vec::new(),
             matrices: Vec::new(),
             half: false,
             history_len: 0,
@@ -243,6 +247,8 @@ impl Assembly {
         for matrix in &mut self.matrices {
             matrix.bind(dofs, pattern);
         }
+        let held = (0..self.elements.len()).filter(|&k| self.elements[k].held);
+        self.held = held.map(|k| (k, Vec::new())).collect();
     }
 
     /// All elements.
@@ -302,6 +308,7 @@ impl Assembly {
         out.size.fill(0.0);
         out.values.fill(0.0);
         out.coupling.fill(0.0);
+        self.held.iter_mut().for_each(|(_, known)| known.clear());
         let work = AssemblyWork {
             executor: &*self.executor,
             elements: &self.elements,
@@ -355,22 +362,29 @@ impl Assembly {
         }
     }
 
-    /// Forces at the equations due to `step` of the degrees of freedom without an equation, as in [`Assembly::assemble`].
+    /// Forces at the equations due to `step` of the degrees of freedom without an equation, as in [`Assembly::assemble`], which
+    /// was called last with the same displacements.
     pub fn couple(&mut self, dofs: &Dofs, moved: AssemblyMotion<'_>, coupling: &mut [f64]) {
         coupling.fill(0.0);
-        let moves = |dof: &usize| moved.step[*dof] != 0.0;
-        let held = self.elements.iter().filter(|p| p.held);
-        for placed in held.filter(|p| p.dofs.iter().any(moves)) {
-            let room = &mut self.room;
-            room.compute(placed, &moved, |past, u, force, tangent| {
-                tangent.fill(0.0);
-                placed.element.add(past, u, force, tangent)
-            });
-            if room.answers {
-                let tangent = &mut room.tangent[..placed.dofs.len().pow(2)];
-                placed.element.mirror(tangent);
-                placed.couple(dofs, tangent, moved.step, coupling, 0);
+        for (number, known) in &mut self.held {
+            let placed = &self.elements[*number];
+            if placed.dofs.iter().all(|&dof| moved.step[dof] == 0.0) {
+                continue;
             }
+            if known.is_empty() {
+                let room = &mut self.room;
+                room.compute(placed, &moved, |past, u, force, tangent| {
+                    tangent.fill(0.0);
+                    placed.element.add(past, u, force, tangent)
+                });
+                let tangent = &mut room.tangent[..placed.dofs.len().pow(2)];
+                match room.answers {
+                    true => placed.element.mirror(tangent),
+                    false => tangent.fill(0.0),
+                }
+                known.extend_from_slice(tangent);
+            }
+            placed.couple(dofs, known, moved.step, coupling, 0);
         }
         for matrix in &self.matrices {
             matrix.couple(dofs, moved.step, coupling);

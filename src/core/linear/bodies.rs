@@ -16,6 +16,7 @@ use crate::linear::sizes::Sizes;
 use crate::linear::system::System;
 use crate::linear::tangent::Tangent;
 use crate::model::{Axis, Contact, Factor, MonitorQuantity};
+use crate::plane::larger;
 use crate::{
     ContactState, Deformation, Estimate, Friction, InterfaceProblem, JudgedLaw, LinearisationPoint,
     Mode, Model, NodeIncrement, NodeKinematics, Norms, Scales, Settings, Singular, SolveResult,
@@ -337,7 +338,7 @@ impl Source for Bodies {
         let mut largest = 0.0_f64;
         for &first in &self.model.dofs.first {
             for d in first..first + 2 {
-                largest = largest.max(self.system.increment(&self.model, d).abs());
+                largest = larger(largest, self.system.increment(&self.model, d).abs());
             }
         }
         for (d, u) in u.iter_mut().enumerate() {
@@ -413,7 +414,7 @@ impl Source for Bodies {
         let moved = |d: usize| (u[d] - before[d]).abs();
         let nodes = self.model.dofs.first.iter();
         nodes.fold(0.0, |most: f64, &first| {
-            most.max(moved(first)).max(moved(first + 1))
+            larger(most, larger(moved(first), moved(first + 1)))
         })
     }
 

@@ -10,9 +10,9 @@
 //!
 //! where v is the relative motion of all slave nodes, normal and tangential, r̃ the condensed out-of-balance force, and T the
 //! contribution of rotating interaction forces. The springs make bodies regular that only their contacts support, and they cancel
-//! exactly when z is solved for. All matrices have the size of the interface, and each body's factors are used at most twice: for
-//! r̃, and to recover the interior displacements. Bodies are coupled only through A, so they can be factored in parallel
-//! ([`Executor`]).
+//! exactly when z is solved for. Masters that no slave node is over are then eliminated as well ([`FarMasters`]), so that all
+//! matrices have the size of the contact. Each body's factors are used at most twice: for r̃, and to recover the interior
+//! displacements. Bodies are coupled only through A, so they can be factored in parallel ([`Executor`]).
 //!
 //! If a bond has a compliance c ([`crate::interface::kinematics`]), its spring is softer, 1 / (1 / k + c), and v is the motion of
 //! the touching point.
@@ -30,6 +30,7 @@
 use crate::executor::{Executor, each};
 use crate::linalg::{DenseFactors, Pattern, SolveError, SymmetricFactors, subtract_product};
 use crate::linear::coupling::Interface;
+use crate::linear::far_masters::FarMasters;
 use crate::model::{Body, BodyKind, Contact};
 use crate::{InterfaceResponse, Model};
 use std::ops::Range;
@@ -55,15 +56,22 @@ pub struct Condensation {
     way: CondensationPath,
     /// Index among the interface's unknowns, by equation.
     number: Vec<Option<usize>>,
-    /// Equations of the interface's unknowns.
-    equations: Vec<usize>,
-    /// T.
+    far: FarMasters,
+    /// Which of them are near: those of the slave nodes and of the elements under them.
+    is_near: Vec<bool>,
+    /// r̃ and u_c of all unknowns.
+    load: Vec<f64>,
+    known: Vec<f64>,
+    /// T. All that follows is about the near unknowns.
     pub turning: Vec<f64>,
     /// A; or S + T, then K'.
     matrix: Vec<f64>,
     /// The matrix to factor.
     inner: Vec<f64>,
     dense: DenseFactors,
+    /// The entries of M as (row of u_m, row of u_s, weight): pairs for x and y, of which the rows of x are listed, and others.
+    pairs: Vec<(usize, usize, f64)>,
+    singles: Vec<(usize, usize, f64)>,
     /// Out-of-balance force of all equations.
     residual: Vec<f64>,
     /// u_c at z = 0; with [`CondensationPath::Direct`], r', then u_m at v = 0.
@@ -104,40 +112,68 @@ impl Condensation {
         let n = model.dofs.equations;
         let upper = entries.filter(|(row, column)| row <= column);
         let pattern = Arc::new(Pattern::new(n, upper));
-        let (way, equations) = match direct_equations(model) {
+        let (way, interface) = match direct_equations(model) {
             Some(equations) => (CondensationPath::Direct, equations),
             None => (CondensationPath::Springs, interface_equations(model)),
         };
         let mut number = vec![None; n];
-        for (k, &equation) in equations.iter().enumerate() {
+        for (k, &equation) in interface.iter().enumerate() {
             number[equation] = Some(k);
         }
-        let (c, z) = (equations.len(), 2 * model.contacts.len());
-        let solved = match way {
-            CondensationPath::Springs => c,
-            CondensationPath::Direct => c - z,
-        };
-        Ok(Condensation {
+        let (c, z) = (interface.len(), 2 * model.contacts.len());
+        let positions = model.positions_of_equations();
+        let mut condensation = Condensation {
             way,
-            parts: parts(
-                &pattern,
-                &equations,
-                &model.positions_of_equations(),
-                &*executor,
-            )?,
+            parts: parts(&pattern, &interface, &positions, &*executor)?,
             executor,
             pattern,
+            far: FarMasters::new(c)?,
+            is_near: vec![true; c],
+            load: vec![0.0; c],
+            known: vec![0.0; c],
             number,
             turning: vec![0.0; c * c],
             matrix: vec![0.0; c * c],
-            dense: DenseFactors::new(solved, z)?,
-            inner: vec![0.0; solved * solved],
+            dense: DenseFactors::new(c, z)?,
+            inner: vec![0.0; c * c],
+            pairs: Vec::new(),
+            singles: Vec::new(),
             residual: vec![0.0; n],
             start: vec![0.0; c],
             motions: vec![0.0; c * z],
             moved: vec![0.0; c],
-            equations,
-        })
+        };
+        condensation.resize(z);
+        Ok(condensation)
+    }
+
+    /// Leaves out the masters that no slave node is over; returns whether they are others than before.
+    pub fn choose(&mut self, model: &Model, interfaces: &[Interface]) -> bool {
+        self.is_near.fill(false);
+        let links = interfaces.iter().flat_map(|interface| &interface.links);
+        let equations = links.filter_map(|link| model.dofs.equation[link.dof]);
+        for unknown in equations.filter_map(|equation| self.number[equation]) {
+            self.is_near[unknown] = true;
+        }
+        let changed = self.far.choose(&self.is_near);
+        self.resize(2 * interfaces.len());
+        changed
+    }
+
+    /// Resizes all that belongs to the near unknowns, with `z` relative motions.
+    fn resize(&mut self, z: usize) {
+        let n = self.size();
+        let solved = match self.way {
+            CondensationPath::Springs => n,
+            CondensationPath::Direct => n - z,
+        };
+        self.dense.resize(solved);
+        self.inner.resize(solved * solved, 0.0);
+        self.turning.resize(n * n, 0.0);
+        self.matrix.resize(n * n, 0.0);
+        self.motions.resize(n * z, 0.0);
+        self.start.resize(n, 0.0);
+        self.moved.resize(n, 0.0);
     }
 
     /// The pattern of the upper half of the bodies' stiffness.
@@ -153,14 +189,19 @@ impl Condensation {
             .collect()
     }
 
-    /// Index of an equation among the interface's unknowns, if it is one.
+    /// Number of near unknowns.
+    fn size(&self) -> usize {
+        self.far.near().len()
+    }
+
+    /// Index of an equation among the near unknowns of the interface, if it is one.
     pub fn number(&self, equation: usize) -> Option<usize> {
-        self.number[equation]
+        self.far.rank(self.number[equation]?)
     }
 
     /// Index of an entry in the matrices of the interface.
     pub fn place(&self, row: usize, column: usize) -> Option<usize> {
-        Some(column * self.equations.len() + row)
+        Some(column * self.size() + row)
     }
 
     /// Factors the stiffness with these values (unless the previous one `stands`) and computes the interface response: fills
@@ -186,11 +227,18 @@ impl Condensation {
         for part in &self.parts {
             part.done?;
             for (&i, load) in part.unknowns.iter().zip(&part.load) {
-                self.start[i] = *load;
+                self.load[i] = *load;
             }
         }
+        if !stands {
+            self.far.renew();
+        }
+        let parts = self.parts.iter();
+        let parts = parts.map(|part| (&part.unknowns[..], &part.schur[..]));
+        let norm = self.far.eliminate(parts, executor)?;
+        self.far.condense(&self.load, &mut self.start)?;
         if self.way == CondensationPath::Direct {
-            return self.relate(interfaces, frames, out);
+            return Ok(self.relate(interfaces, frames, out)?.max(norm));
         }
         self.assemble(interfaces, frames, k);
         self.dense.factor(&self.matrix);
@@ -198,7 +246,7 @@ impl Condensation {
         self.dense.solve(&mut self.start)?;
         self.dense.solve_with(&*self.executor, &mut self.motions)?;
         self.respond(interfaces, frames, out);
-        Ok(self.dense.inverse_norm())
+        Ok(self.dense.inverse_norm().max(norm))
     }
 
     /// The relation without springs; returns an estimate of the norm of the scaled inverse of K'_mm.
@@ -208,7 +256,7 @@ impl Condensation {
         frames: &[[[f64; 2]; 2]],
         out: &mut InterfaceResponse,
     ) -> Result<f64, SolveError> {
-        let (c, z) = (self.equations.len(), out.start.len());
+        let (c, z) = (self.size(), out.start.len());
         let m = c - z;
         out.stiffness = f64::INFINITY;
         self.add_turning();
@@ -241,19 +289,21 @@ impl Condensation {
 
     /// Writes Bᵀ (S + T) B to `matrix`, and Bᵀ r̃ to `start`.
     fn transform(&mut self, interfaces: &[Interface], frames: &[[[f64; 2]; 2]]) {
-        let c = self.equations.len();
+        let c = self.size();
         let m = c - 2 * interfaces.len();
-        for (s, (interface, frame)) in interfaces.iter().zip(frames).enumerate() {
-            let (masters, slaves) = self.matrix.split_at_mut(m * c);
-            let own = &mut slaves[2 * s * c..2 * (s + 1) * c];
-            for link in &interface.links[2..] {
-                if let Some(j) = link.unknown {
-                    let from = &own[link.axis * c..(link.axis + 1) * c];
-                    for (to, from) in masters[j * c..(j + 1) * c].iter_mut().zip(from) {
-                        *to += link.weight * from;
-                    }
-                }
+        self.list_shares(interfaces);
+        let (masters, slaves) = self.matrix.split_at_mut(m * c);
+        let of_pairs = self
+            .pairs
+            .iter()
+            .flat_map(|&(j, own, w)| [(j, own, w), (j + 1, own + 1, w)]);
+        for (j, own, weight) in of_pairs.chain(self.singles.iter().copied()) {
+            let from = &slaves[own * c..(own + 1) * c];
+            for (to, from) in masters[j * c..(j + 1) * c].iter_mut().zip(from) {
+                *to += weight * from;
             }
+        }
+        for (own, frame) in slaves.chunks_exact_mut(2 * c.max(1)).zip(frames) {
             let (x, y) = own.split_at_mut(c);
             for (x, y) in x.iter_mut().zip(y) {
                 (*x, *y) = (-along(frame[0], *x, *y), -along(frame[1], *x, *y));
@@ -262,40 +312,51 @@ impl Condensation {
         let columns = self.matrix.chunks_exact_mut(c.max(1));
         for column in columns.chain(std::iter::once(&mut self.start[..])) {
             let (masters, slaves) = column.split_at_mut(m);
-            for ((interface, frame), own) in interfaces
-                .iter()
-                .zip(frames)
-                .zip(slaves.chunks_exact_mut(2))
-            {
-                for link in &interface.links[2..] {
-                    if let Some(j) = link.unknown {
-                        masters[j] += link.weight * own[link.axis];
-                    }
-                }
+            for &(j, own, weight) in &self.pairs {
+                let (to, from) = (&mut masters[j..j + 2], &slaves[own..own + 2]);
+                to[0] += weight * from[0];
+                to[1] += weight * from[1];
+            }
+            for &(j, own, weight) in &self.singles {
+                masters[j] += weight * slaves[own];
+            }
+            for (own, frame) in slaves.chunks_exact_mut(2).zip(frames) {
                 let [x, y] = [own[0], own[1]];
                 (own[0], own[1]) = (-along(frame[0], x, y), -along(frame[1], x, y));
             }
         }
     }
 
-    /// Writes S + T to `matrix`.
-    fn add_turning(&mut self) {
-        let c = self.equations.len();
-        self.matrix.copy_from_slice(&self.turning);
-        for part in &self.parts {
-            let columns = part.schur.chunks_exact(part.unknowns.len().max(1));
-            for (&j, column) in part.unknowns.iter().zip(columns) {
-                let to = &mut self.matrix[j * c..(j + 1) * c];
-                for (&i, schur) in part.unknowns.iter().zip(column) {
-                    to[i] += schur;
+    /// Lists the entries of M.
+    fn list_shares(&mut self, interfaces: &[Interface]) {
+        self.pairs.clear();
+        self.singles.clear();
+        for (s, interface) in interfaces.iter().enumerate() {
+            for pair in interface.links[2..].chunks_exact(2) {
+                let weight = pair[0].weight;
+                match [pair[0].unknown, pair[1].unknown] {
+                    [Some(x), Some(y)] if y == x + 1 => self.pairs.push((x, 2 * s, weight)),
+                    both => {
+                        let axes = both.into_iter().zip(2 * s..);
+                        let known = axes.filter_map(|(j, own)| Some((j?, own, weight)));
+                        self.singles.extend(known);
+                    }
                 }
             }
         }
     }
 
+    /// Writes S' + T to `matrix`.
+    fn add_turning(&mut self) {
+        let both = self.far.stiffness().iter().zip(&self.turning);
+        for (to, (stiffness, turning)) in self.matrix.iter_mut().zip(both) {
+            *to = turning + stiffness;
+        }
+    }
+
     /// Assembles A.
     fn assemble(&mut self, interfaces: &[Interface], frames: &[[[f64; 2]; 2]], k: f64) {
-        let c = self.equations.len();
+        let c = self.size();
         self.add_turning();
         for (interface, frame) in interfaces.iter().zip(frames) {
             if interface.bond.give() != [0.0; 2] {
@@ -315,7 +376,7 @@ impl Condensation {
 
     /// Adds springs along n and t with separate stiffnesses to A.
     fn add_springs(&mut self, interface: &Interface, frame: &[[f64; 2]; 2], springs: [f64; 2]) {
-        let c = self.equations.len();
+        let c = self.size();
         for col in &interface.links {
             let Some(j) = col.unknown else { continue };
             for row in &interface.links {
@@ -330,7 +391,7 @@ impl Condensation {
 
     /// Writes k Gᵀ to `motions`.
     fn push(&mut self, interfaces: &[Interface], frames: &[[[f64; 2]; 2]], k: f64) {
-        let c = self.equations.len();
+        let c = self.size();
         self.motions.fill(0.0);
         let columns = self.motions.chunks_exact_mut(c.max(1));
         let directions = interfaces
@@ -358,7 +419,7 @@ impl Condensation {
         frames: &[[[f64; 2]; 2]],
         out: &mut InterfaceResponse,
     ) {
-        let (c, k) = (self.equations.len(), out.stiffness);
+        let (c, k) = (self.size(), out.stiffness);
         let motion = |interface: &Interface, direction: &[f64; 2], u: &[f64]| {
             let share = interface.links.iter().map(|link| {
                 link.unknown
@@ -409,8 +470,8 @@ impl Condensation {
             1.0
         };
         let count = match self.way {
-            CondensationPath::Springs => self.equations.len(),
-            CondensationPath::Direct => self.equations.len() - gaps.len(),
+            CondensationPath::Springs => self.size(),
+            CondensationPath::Direct => self.size() - gaps.len(),
         };
         for (column, gap) in self.motions.chunks_exact(count.max(1)).zip(gaps) {
             for (moved, motion) in self.moved.iter_mut().zip(column) {
@@ -420,7 +481,8 @@ impl Condensation {
         if self.way == CondensationPath::Direct {
             self.move_slaves(gaps, interfaces, frames);
         }
-        let (residual, known) = (&self.residual, &self.moved);
+        self.far.recover(&self.moved, &mut self.known);
+        let (residual, known) = (&self.residual, &self.known);
         each(&*self.executor, &mut self.parts, &|part| {
             part.done = part.recover(residual, known);
         });
@@ -433,13 +495,14 @@ impl Condensation {
 
     /// Writes u_m at v = 0 to `moved`.
     fn move_masters(&mut self, gaps: &[f64]) {
-        let m = self.equations.len() - gaps.len();
+        let m = self.size() - gaps.len();
         self.moved[..m].copy_from_slice(&self.start[..m]);
     }
 
     /// Writes u_s to `moved`, which already contains u_m.
     fn move_slaves(&mut self, gaps: &[f64], interfaces: &[Interface], frames: &[[[f64; 2]; 2]]) {
-        let (masters, slaves) = self.moved.split_at_mut(self.equations.len() - gaps.len());
+        let m = self.size() - gaps.len();
+        let (masters, slaves) = self.moved.split_at_mut(m);
         let nodes = interfaces.iter().zip(frames).zip(gaps.chunks_exact(2));
         for (((interface, frame), v), own) in nodes.zip(slaves.chunks_exact_mut(2)) {
             for (axis, own) in own.iter_mut().enumerate() {

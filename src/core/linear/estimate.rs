@@ -50,7 +50,7 @@ const SPARSE_CONTACT: f64 = 2800.0;
 const SPARSE_ENTRY: f64 = 150.0;
 const SPARSE_SWEEP: f64 = 1.2e-9;
 /// Number of stored matrices over the interface's displacements, and over its forces, for condensation.
-const OVER_DISPLACEMENTS: f64 = 7.0;
+const OVER_DISPLACEMENTS: f64 = 8.0;
 const OVER_FORCES: f64 = 4.0;
 /// Bytes of the program itself.
 const PROGRAM: f64 = 10e6;

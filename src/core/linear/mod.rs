@@ -20,6 +20,7 @@ pub mod condensed;
 mod coupling;
 mod drag;
 pub mod estimate;
+mod far_masters;
 pub mod norms;
 mod ordering;
 mod partners;

@@ -10,6 +10,7 @@ use super::violation::violation;
 use crate::Model;
 use crate::linalg::Factors;
 use crate::model::Factor;
+use crate::plane::larger;
 
 impl System {
     /// Computes the out-of-balance force R − F of eqn (22) and its norms.
@@ -47,13 +48,12 @@ impl System {
         for (d, equation) in model.dofs.equation.iter().enumerate() {
             let balance = self.external[d] + self.interaction[d] - self.force[d];
             match self.sizes.lever(d) {
-                None => length = length.max(balance.abs() / model.length),
+                None => length = larger(length, balance.abs() / model.length),
                 Some(lever) => {
-                    scale = scale
-                        .max(self.size[d] / lever)
-                        .max(self.external[d].abs() / lever);
+                    let size = larger(self.external[d].abs(), self.size[d]);
+                    scale = larger(scale, size / lever);
                     if equation.is_some() {
-                        force = force.max(balance.abs() / lever);
+                        force = larger(force, balance.abs() / lever);
                     }
                 }
             }
@@ -92,7 +92,8 @@ impl System {
         let mut largest = 0.0_f64;
         for (d, equation) in model.dofs.equation.iter().enumerate() {
             if let (Some(e), Some(lever)) = (*equation, self.sizes.lever(d)) {
-                largest = largest.max((self.residual[e] - self.coupling[e]).abs() / lever);
+                let asked = (self.residual[e] - self.coupling[e]).abs();
+                largest = larger(largest, asked / lever);
             }
         }
         largest / self.norms.scale.max(f64::MIN_POSITIVE)
@@ -157,8 +158,8 @@ impl System {
         for (d, equation) in model.dofs.equation.iter().enumerate() {
             let Some(e) = *equation else { continue };
             match self.sizes.lever(d) {
-                Some(lever) => worst[0] = worst[0].max(self.work[e] / lever),
-                None => worst[1] = worst[1].max(self.work[e]),
+                Some(lever) => worst[0] = larger(worst[0], self.work[e] / lever),
+                None => worst[1] = larger(worst[1], self.work[e]),
             }
         }
         self.floors = worst.map(|worst| ROUND_OFF * f64::EPSILON * worst);

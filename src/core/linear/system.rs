@@ -21,6 +21,7 @@ use crate::linear::partners::{join_partners, turn_points};
 use crate::linear::point_forces::PointForces;
 use crate::linear::sizes::Sizes;
 use crate::model::Geometry;
+use crate::plane::{larger, max_abs};
 use crate::{
     CondensedSystem, ContactState, ElementOutput, Equation, Estimate, LinearisationPoint, Model,
     NodeIncrement, NodeKinematics, Norms, Settings, SolveResult, Work,
@@ -186,7 +187,7 @@ impl System {
                 model.nodes[n].at[0] + u[first],
                 model.nodes[n].at[1] + u[first + 1],
             ];
-            self.reach = self.reach.max(position[0].abs()).max(position[1].abs());
+            self.reach = larger(self.reach, max_abs(*position));
         }
     }
 
@@ -385,9 +386,13 @@ impl System {
                 self.executor.clone(),
             )?);
         }
-        let Some(bodies) = &self.bodies else {
+        let Some(bodies) = &mut self.bodies else {
             return Ok(());
         };
+        let changed = bodies.choose(model, &self.interfaces) || self.layout != Some(Layout::Bodies);
+        if changed {
+            self.interfaces.iter_mut().for_each(|i| i.placed = false);
+        }
         if self.layout != Some(Layout::Bodies) {
             self.taken.clear();
             let parts = bodies.parts();
@@ -398,7 +403,6 @@ impl System {
                 buffer.resize(model.dofs.equations, 0.0);
             }
             self.layout = Some(Layout::Bodies);
-            self.interfaces.iter_mut().for_each(|i| i.placed = false);
         }
         for interface in &mut self.interfaces {
             let place = |row, column| bodies.place(row, column);

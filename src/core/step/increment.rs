@@ -52,6 +52,7 @@ impl Iterate {
             .fallback
             .map(|fallback| fallback.by)
             .filter(|by| *by != Fallback::Back);
+        let stretch = self.deformation.map(|found| found.smallest.stretch);
         let left_range = self.take_range_left();
         let start = Arc::make_mut(&mut self.state.start);
         start.load_factor = self.state.load_factor;
@@ -76,6 +77,7 @@ impl Iterate {
             motion,
             found,
             left_range,
+            stretch,
             last,
         }
     }

@@ -4,7 +4,7 @@
 //! The modules of the three levels add its methods where they are used: `major` renews and compares, `increment` accepts and
 //! restarts, `arc` follows the path, [`crate::step::recovery`] retries.
 
-use crate::{IncrementStart, Model, Norms, PointDeformation, Source, State};
+use crate::{Deformation, IncrementStart, Model, Norms, Source, State};
 use std::any::Any;
 use std::sync::Arc;
 
@@ -17,8 +17,8 @@ pub(super) struct Iterate {
     pub linearised: bool,
     /// Whether the last linearisation is at the displacements of `state`, so that monitors can be read from it.
     pub measured: bool,
-    /// Worst point outside the range of its law, as [`Iterate::inverted`] last found it.
-    pub outside: Option<PointDeformation>,
+    /// The extreme deformations that [`Iterate::inverted`] last found.
+    pub deformation: Option<Deformation>,
     /// Norms of the last linearisation.
     pub norms: Norms,
     /// Data that a search over all nodes keeps between proposals.
@@ -35,7 +35,7 @@ impl Iterate {
             source,
             linearised: false,
             measured: false,
-            outside: None,
+            deformation: None,
             norms: Norms::default(),
             kept: None,
             room: None,

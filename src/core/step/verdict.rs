@@ -69,11 +69,10 @@ impl Stepper {
 
 impl Iterate {
     /// Worst point of an inverted element of the current state. `None` if no element is inverted. The same pass over all points
-    /// renews `outside`.
+    /// renews `deformation`.
     pub(super) fn inverted(&mut self) -> Option<PointDeformation> {
-        let found = self.source.deformation(&self.state.u)?;
-        self.outside = found.outside;
-        found.inverted()
+        self.deformation = self.source.deformation(&self.state.u);
+        self.deformation?.inverted()
     }
 
     /// Takes the worst point outside the range of its law in the state that is being accepted. `None` if all are inside, or if a
@@ -83,7 +82,8 @@ impl Iterate {
             let before = self.source.deformation(&self.state.start.u);
             before.is_none_or(|found| found.outside.is_none())
         };
-        self.outside.take().filter(|_| inside_before())
+        let outside = self.deformation.take()?.outside;
+        outside.filter(|_| inside_before())
     }
 
     /// Restores the anchors of the nodes that touched when the increment started, for the rest of the attempt, and continues with

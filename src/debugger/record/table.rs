@@ -33,7 +33,6 @@
 use crate::explain::names;
 use crate::history::strip::norms_after;
 use std::fmt::Write;
-use stickslip_core::fem::deformation::deformation;
 use stickslip_core::model::ReportedKind;
 use stickslip_core::{
     ContactRecord, Control, Event, Failure, Friction, Jumps, Model, Monitor, MonitorQuantity,
@@ -62,14 +61,13 @@ pub fn csv_header(model: &Model, stability: bool) -> String {
     line
 }
 
-/// The row of an accepted increment; `u` is its displacement vector.
+/// The row of an accepted increment.
 pub fn csv_row(
     model: &Model,
     event: &Event,
     minors: u64,
     monitors: &[f64],
     stability: Option<Stability>,
-    u: &[f64],
 ) -> String {
     let at = event.position;
     let mut line = format!(
@@ -80,9 +78,14 @@ pub fn csv_row(
         // Writing to a string does not fail.
         let _ = write!(line, ",{value:?}");
     }
-    let (jumped, motion) = match event.outcome {
-        Outcome::Increment { jumped, motion, .. } => (jumped, motion),
-        _ => (false, None),
+    let (jumped, motion, stretch) = match event.outcome {
+        Outcome::Increment {
+            jumped,
+            motion,
+            stretch,
+            ..
+        } => (jumped, motion, stretch),
+        _ => (false, None, None),
     };
     let _ = write!(line, ",{}", u8::from(jumped));
     match motion.filter(|_| moves(model)) {
@@ -101,8 +104,11 @@ pub fn csv_row(
     if let Some(stability) = stability {
         let _ = write!(line, ",{stability}");
     }
-    if let Some(deformation) = deformation(model, u) {
-        let _ = write!(line, ",{:?}", deformation.smallest.stretch);
+    if model.has_solids() {
+        line.push(',');
+        if let Some(stretch) = stretch {
+            let _ = write!(line, "{stretch:?}");
+        }
     }
     line.push('\n');
     line
