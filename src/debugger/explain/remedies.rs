@@ -9,7 +9,7 @@ use super::remedy::{
     BLOCK, CONSISTENT_GEOMETRY, CONSISTENT_LIMIT, DAMP, LADDER, NEWTON, Remedy, RemedyInput,
     RemedyKind, STRESS_RESIDUAL, TOUCH_AT_START,
 };
-use super::restart;
+use super::restart::{self, is_past};
 use super::tested::Dimension;
 use std::cmp::Ordering;
 use std::ops::ControlFlow;
@@ -282,7 +282,8 @@ pub fn attempt_within(
         let event = solver.event();
         let ends = event.outcome.ends_major();
         trial.majors += u32::from(ends);
-        let is_there = is_there(solver.state(), event, target);
+        let is_accepted = matches!(event.outcome, Outcome::Increment { .. });
+        let is_there = is_accepted && is_past(solver.model(), solver.state(), target);
         let mut changes = Vec::new();
         if let Some(stepper) = solver.stepper() {
             let event = stepper.event();
@@ -319,13 +320,6 @@ pub fn attempt_within(
         trial.factorizations += 1;
     }
     Some(trial)
-}
-
-/// Whether an increment was accepted at or beyond the failed load.
-fn is_there(state: &State, event: &Event, (leg, load): (usize, f64)) -> bool {
-    let accepted = matches!(event.outcome, Outcome::Increment { .. });
-    let close = (event.load_factor - load).abs() <= 1e-9 * state.controls.increment;
-    accepted && (state.status == Status::Finished || state.start.leg > leg || close)
 }
 
 /// The holds and releases of hysteresis after a minor iteration that did not settle.

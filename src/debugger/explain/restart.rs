@@ -121,7 +121,7 @@ pub fn restart(
         let outcome = &stepper.event().outcome;
         majors += u64::from(outcome.ends_major());
         let accepted = matches!(outcome, Outcome::Increment { .. });
-        if accepted && is_past(stepper, target) {
+        if accepted && is_past(stepper.model(), stepper.state(), target) {
             ControlFlow::Break(())
         } else {
             ControlFlow::Continue(())
@@ -142,10 +142,9 @@ pub fn restart(
 }
 
 /// Whether the last accepted state has reached a load on a leg of the path.
-fn is_past(stepper: &Stepper, (leg, load): (usize, f64)) -> bool {
-    let (state, path) = (stepper.state(), &stepper.model().path);
+pub(super) fn is_past(model: &Model, state: &State, (leg, load): (usize, f64)) -> bool {
     let start = &state.start;
-    let way = match path.get(leg..leg + 2) {
+    let way = match model.path.get(leg..leg + 2) {
         Some([from, to]) => (to - from).signum(),
         _ => 1.0,
     };

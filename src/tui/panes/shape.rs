@@ -43,6 +43,8 @@ const SPARSE: usize = 2;
 const CLEAR: f64 = 4.0;
 /// Cells between two slave nodes from which on their names are written.
 const APART: u16 = 8;
+/// Number of outer nodes that determine the place of a body's name.
+const ENOUGH: usize = 1000;
 /// Arrow heads by eighths of a turn, anticlockwise from the right.
 const HEADS: [&str; 8] = names::ARROWS;
 const DOUBLE_HEADS: [&str; 8] = ["⇒", "⇗", "⇑", "⇖", "⇐", "⇙", "⇓", "⇘"];
@@ -174,7 +176,9 @@ fn body_names(buffer: &mut Buffer, canvas: &Canvas, window: &Window, app: &App, 
         let wide = name.width() as u16;
         let (at, aside) = match &body.kind {
             BodyKind::Solid(_) | BodyKind::Linear(_) | BodyKind::Truss(_) => {
-                (mean(outer_nodes(body), window, view), -i32::from(wide / 2))
+                let step = 1 + outer_nodes(body).count() / ENOUGH;
+                let nodes = outer_nodes(body).step_by(step);
+                (mean(nodes, window, view), -i32::from(wide / 2))
             }
             BodyKind::Beam(_) => (window.place(view, body.nodes[body.nodes.len() / 2]), 2),
         };
