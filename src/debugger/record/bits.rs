@@ -34,7 +34,13 @@ impl Bits {
 
     fn add_bytes(&mut self, bytes: &[u8]) -> Result<(), NoWord> {
         self.add(bytes.len() as u64)?;
-        bytes.iter().try_for_each(|byte| self.add((*byte).into()))
+        let (fours, rest) = bytes.as_chunks::<4>();
+        for four in fours {
+            for (sum, byte) in self.0.iter_mut().zip(four) {
+                *sum = mixed(*sum, (*byte).into());
+            }
+        }
+        rest.iter().try_for_each(|byte| self.add((*byte).into()))
     }
 }
 
