@@ -231,7 +231,8 @@ impl<'a> Tally<'a> {
             stretches.add(event.load_factor, stability);
         }
         let model = &self.scene.model;
-        let row = || table::csv_row(model, event, minors, monitors, stability);
+        let u = &solver.state().start.u;
+        let row = || table::csv_row(model, event, minors, monitors, stability, u);
         let sent = send(&mut outputs.csv, row)?;
         self.accepted += 1;
         self.majors += u64::from(event.position.major);

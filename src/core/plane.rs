@@ -28,8 +28,7 @@ pub fn unit(v: [f64; 2]) -> Option<[f64; 2]> {
     (length > 0.0).then(|| v.map(|x| x / length))
 }
 
-/// `most` or a larger number; `most` if `other` is NaN. Takes one instruction, and [`f64::max`] five, each of which waits for the
-/// one before in a loop.
+/// The larger of two numbers; `most` if `other` is NaN. In a loop this is much faster than [`f64::max`], which treats NaN on both sides.
 pub fn larger(most: f64, other: f64) -> f64 {
     if other > most { other } else { most }
 }

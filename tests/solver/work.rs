@@ -30,6 +30,44 @@ fn in_a_major(solver: &str) -> (Stepper, State) {
 }
 
 #[test]
+fn a_state_that_was_only_looked_at_leaves_no_factors_for_the_next() {
+    let set = [
+        ("settings.solver", "condensed"),
+        ("settings.factor", "needed"),
+        ("refine", "2"),
+    ];
+    let mut first = stepper(BLOCKS, &set);
+    // The states at the start of major iterations, and those after their first minor iteration.
+    let mut starts = vec![];
+    loop {
+        let before = first.state().clone();
+        if first.step().is_none() || before.next.increment > 4 {
+            break;
+        }
+        if before.next.minor == 1 {
+            starts.push((before, first.state().clone()));
+        }
+    }
+    let mut compared = 0;
+    for pair in starts.windows(2) {
+        let [(looked_at, _), (before, after)] = pair else {
+            unreachable!()
+        };
+        if looked_at.next.increment == before.next.increment {
+            let mut other = stepper(BLOCKS, &set);
+            other.step().expect("the scene starts");
+            other.restore(looked_at);
+            assert!(other.norms().is_some());
+            other.restore(before);
+            other.step().expect("it went on from there");
+            assert!(other.state() == after, "{:?}", before.next);
+            compared += 1;
+        }
+    }
+    assert!(compared > 5, "{compared}");
+}
+
+#[test]
 fn within_a_major_iteration_going_back_assembles_and_factors_nothing() {
     for solver in ["condensed", "augmented"] {
         let (mut stepper, before) = in_a_major(solver);

@@ -56,8 +56,9 @@ pub struct Condensation {
     way: CondensationPath,
     /// Index among the interface's unknowns, by equation.
     number: Vec<Option<usize>>,
+    /// Eliminates the unknowns of the interface that are far from all slave nodes.
     far: FarMasters,
-    /// Which of them are near: those of the slave nodes and of the elements under them.
+    /// Whether each unknown is near: those of the slave nodes and of the elements under them.
     is_near: Vec<bool>,
     /// r̃ and u_c of all unknowns.
     load: Vec<f64>,
@@ -205,7 +206,8 @@ impl Condensation {
     }
 
     /// Factors the stiffness with these values (unless the previous one `stands`) and computes the interface response: fills
-    /// `start` and `response` of `out`, using its springs. Returns an estimate of the norm of A's scaled inverse.
+    /// `start` and `response` of `out`, using its springs. Returns an estimate of the norm of the scaled inverse of A, or of S_ff
+    /// ([`FarMasters`]) if that is larger.
     ///
     /// # Errors
     /// [`SolveError::Singular`] if the stiffness cannot be factored without pivoting.
@@ -221,6 +223,9 @@ impl Condensation {
         let k = out.stiffness;
         self.residual.copy_from_slice(residual);
         let executor = &*self.executor;
+        if !stands {
+            self.far.renew();
+        }
         each(executor, &mut self.parts, &|part| {
             part.done = part.condense(stands, stiffness, residual, k, executor);
         });
@@ -229,9 +234,6 @@ impl Condensation {
             for (&i, load) in part.unknowns.iter().zip(&part.load) {
                 self.load[i] = *load;
             }
-        }
-        if !stands {
-            self.far.renew();
         }
         let parts = self.parts.iter();
         let parts = parts.map(|part| (&part.unknowns[..], &part.schur[..]));

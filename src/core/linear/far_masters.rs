@@ -74,11 +74,17 @@ impl FarMasters {
             list.push(unknown);
         }
         let (n, f) = (self.near.len(), self.far.len());
-        self.stiffness.resize(n * n, 0.0);
-        self.inner.resize(f * f, 0.0);
-        self.forces.resize(n * f, 0.0);
-        self.motions.resize(f * n, 0.0);
-        self.rest.resize(f, 0.0);
+        for (block, size) in [
+            (&mut self.stiffness, n * n),
+            (&mut self.inner, f * f),
+            (&mut self.forces, n * f),
+            (&mut self.motions, f * n),
+            (&mut self.rest, f),
+        ] {
+            block.clear();
+            block.reserve_exact(size);
+            block.resize(size, 0.0);
+        }
         self.dense.resize(f);
         self.is_current = false;
         true

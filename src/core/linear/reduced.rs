@@ -122,10 +122,11 @@ impl System {
         if self.layout == Some(Layout::Bodies) {
             self.condensed.relation.stiffness = self.spring(model);
             self.start_rhs();
-            self.done.factorizations += u64::from(!self.stands);
+            self.done.factorizations += u64::from(!self.is_factored);
+            let stands = std::mem::take(&mut self.is_factored);
             if let Some(bodies) = &mut self.bodies
                 && let Ok(norm) = bodies.condense(
-                    self.stands,
+                    stands,
                     &self.stiffness,
                     &self.rhs,
                     &self.interfaces,
@@ -133,6 +134,7 @@ impl System {
                     &mut self.condensed.relation,
                 )
             {
+                self.is_factored = true;
                 return Ok(norm);
             }
             self.linearise_in(Layout::Whole, model, at)?;

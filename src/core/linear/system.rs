@@ -64,8 +64,10 @@ pub struct System {
     taken: Vec<f64>,
     remembered: Vec<f64>,
     plain: Vec<f64>,
-    /// Whether the stiffness of the last linearisation was computed at an earlier state, and is already factored.
-    pub(super) stands: bool,
+    /// Whether the stiffness of the last linearisation was computed at an earlier state.
+    stands: bool,
+    /// Whether `bodies` have the factors of `stiffness`.
+    pub(super) is_factored: bool,
     /// Work done so far.
     pub done: Work,
     /// Whether the last linearisation contains a drag.
@@ -137,6 +139,7 @@ impl System {
             remembered: Vec::new(),
             plain: Vec::new(),
             stands: false,
+            is_factored: false,
             done: Work::default(),
             dragged: false,
             scaled: false,
@@ -259,6 +262,7 @@ impl System {
         self.stands =
             at.factored.is_some() && self.taken == about && self.remembered == at.accepted.history;
         if !self.stands {
+            self.is_factored = false;
             self.assemble(model, &LinearisationPoint { u: about, ..*at });
             self.taken.clear();
             if model.keeps_factors(at.chosen.factor, self.condenses(at.chosen)) {

@@ -229,7 +229,8 @@ pub enum Outcome {
         /// Worst point at which a solid leaves the range of its law in this increment. `None` if all points are inside, or if a
         /// point was outside before.
         left_range: Option<PointDeformation>,
-        /// Smallest principal stretch at the integration points of solids. `None` without solids in the plane.
+        /// Smallest principal stretch at the integration points of solids. `None` without solids in the plane, and from attached
+        /// solvers.
         stretch: Option<f64>,
         /// Whether the history ends here.
         last: bool,

@@ -9,7 +9,7 @@ use super::remedy::{
     BLOCK, CONSISTENT_GEOMETRY, CONSISTENT_LIMIT, DAMP, LADDER, NEWTON, Remedy, RemedyInput,
     RemedyKind, STRESS_RESIDUAL, TOUCH_AT_START,
 };
-use super::restart::{self, is_past};
+use super::restart::{self, FailedLoad};
 use super::tested::Dimension;
 use std::cmp::Ordering;
 use std::ops::ControlFlow;
@@ -261,7 +261,7 @@ pub fn attempt_within(
     stop: &dyn Fn() -> bool,
 ) -> Option<RemedyTrial> {
     solver.restore(state).ok()?;
-    let target = (state.start.leg, state.load_factor);
+    let target = FailedLoad::new(state);
     let mut trial = RemedyTrial::new(remedy);
     let change = |solver: &mut dyn Solver, trial: &mut RemedyTrial, what: Intervention| {
         // Impossible interventions are skipped: a node past its surface cannot touch.
@@ -283,7 +283,7 @@ pub fn attempt_within(
         let ends = event.outcome.ends_major();
         trial.majors += u32::from(ends);
         let is_accepted = matches!(event.outcome, Outcome::Increment { .. });
-        let is_there = is_accepted && is_past(solver.model(), solver.state(), target);
+        let is_there = is_accepted && target.is_passed(solver.state());
         let mut changes = Vec::new();
         if let Some(stepper) = solver.stepper() {
             let event = stepper.event();

@@ -113,7 +113,7 @@ pub fn restart(
     budget: u64,
     stop: &dyn Fn() -> bool,
 ) -> Option<Restart> {
-    let target = (state.start.leg, state.load_factor);
+    let target = FailedLoad::new(state);
     let (mut minors, mut majors) = (0, 0);
     let until = Until::end().minors(budget).interrupted_by(stop);
     let end = stepper.drive(until, |stepper| {
@@ -121,7 +121,7 @@ pub fn restart(
         let outcome = &stepper.event().outcome;
         majors += u64::from(outcome.ends_major());
         let accepted = matches!(outcome, Outcome::Increment { .. });
-        if accepted && is_past(stepper.model(), stepper.state(), target) {
+        if accepted && target.is_passed(stepper.state()) {
             ControlFlow::Break(())
         } else {
             ControlFlow::Continue(())
@@ -141,14 +141,30 @@ pub fn restart(
     })
 }
 
-/// Whether the last accepted state has reached a load on a leg of the path.
-pub(super) fn is_past(model: &Model, state: &State, (leg, load): (usize, f64)) -> bool {
-    let start = &state.start;
-    let way = match model.path.get(leg..leg + 2) {
-        Some([from, to]) => (to - from).signum(),
-        _ => 1.0,
-    };
-    let slack = 1e-9 * state.controls.increment;
-    let on_leg = start.leg == leg && (start.load_factor - load) * way >= -slack;
-    state.status == Status::Finished || start.leg > leg || on_leg
+/// The load at which an increment failed.
+#[derive(Clone, Copy)]
+pub(super) struct FailedLoad {
+    leg: usize,
+    load: f64,
+    /// 1 if the load of that increment rises, -1 if it falls. Path following may lower it on a rising leg.
+    way: f64,
+}
+
+impl FailedLoad {
+    /// The load of the increment in which a state is.
+    pub fn new(state: &State) -> FailedLoad {
+        FailedLoad {
+            leg: state.start.leg,
+            load: state.load_factor,
+            way: (state.load_factor - state.start.load_factor).signum(),
+        }
+    }
+
+    /// Whether the last accepted state has reached it.
+    pub fn is_passed(self, state: &State) -> bool {
+        let start = &state.start;
+        let slack = 1e-9 * state.controls.increment;
+        let on_leg = start.leg == self.leg && (start.load_factor - self.load) * self.way >= -slack;
+        state.status == Status::Finished || start.leg > self.leg || on_leg
+    }
 }

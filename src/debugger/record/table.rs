@@ -33,6 +33,7 @@
 use crate::explain::names;
 use crate::history::strip::norms_after;
 use std::fmt::Write;
+use stickslip_core::fem::deformation::deformation;
 use stickslip_core::model::ReportedKind;
 use stickslip_core::{
     ContactRecord, Control, Event, Failure, Friction, Jumps, Model, Monitor, MonitorQuantity,
@@ -61,13 +62,14 @@ pub fn csv_header(model: &Model, stability: bool) -> String {
     line
 }
 
-/// The row of an accepted increment.
+/// The row of an accepted increment; `u` is its displacement vector.
 pub fn csv_row(
     model: &Model,
     event: &Event,
     minors: u64,
     monitors: &[f64],
     stability: Option<Stability>,
+    u: &[f64],
 ) -> String {
     let at = event.position;
     let mut line = format!(
@@ -104,11 +106,10 @@ pub fn csv_row(
     if let Some(stability) = stability {
         let _ = write!(line, ",{stability}");
     }
-    if model.has_solids() {
-        line.push(',');
-        if let Some(stretch) = stretch {
-            let _ = write!(line, "{stretch:?}");
-        }
+    // Attached solvers do not compute it.
+    let stretch = stretch.or_else(|| Some(deformation(model, u)?.smallest.stretch));
+    if let Some(stretch) = stretch {
+        let _ = write!(line, ",{stretch:?}");
     }
     line.push('\n');
     line
