@@ -113,7 +113,11 @@ pub fn restart(
     budget: u64,
     stop: &dyn Fn() -> bool,
 ) -> Option<Restart> {
-    let target = FailedLoad::new(state);
+    let mut target = FailedLoad::new(state);
+    // From the start, the load is reached in the direction of its leg.
+    if let Some([from, to]) = stepper.model().path.get(target.leg..target.leg + 2) {
+        target.way = (to - from).signum();
+    }
     let (mut minors, mut majors) = (0, 0);
     let until = Until::end().minors(budget).interrupted_by(stop);
     let end = stepper.drive(until, |stepper| {
@@ -166,5 +170,29 @@ impl FailedLoad {
         let slack = 1e-9 * state.controls.increment;
         let on_leg = start.leg == self.leg && (start.load_factor - self.load) * self.way >= -slack;
         state.status == Status::Finished || start.leg > self.leg || on_leg
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_load_is_passed_in_the_direction_of_its_increment() {
+        let scene = Scene::open("osc-two6", &[]).unwrap();
+        let mut state = Stepper::new(Arc::new(scene.model)).state().clone();
+        let at = |state: &State, load: f64| {
+            let mut state = state.clone();
+            Arc::make_mut(&mut state.start).load_factor = load;
+            state
+        };
+        for (from, failed, before, passed) in [(0.6, 0.2, 0.5, 0.1), (0.2, 0.6, 0.5, 0.7)] {
+            state.load_factor = failed;
+            let target = FailedLoad::new(&at(&state, from));
+            assert!(!target.is_passed(&at(&state, from)));
+            assert!(!target.is_passed(&at(&state, before)));
+            assert!(target.is_passed(&at(&state, failed)));
+            assert!(target.is_passed(&at(&state, passed)));
+        }
     }
 }
