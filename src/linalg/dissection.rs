@@ -112,7 +112,7 @@ impl Dissection<'_> {
         self.part[start] = usize::MAX;
         while let Some(&group) = found.get(next) {
             next += 1;
-            for &other in self.graph.neighbours(group) {
+            for other in self.graph.neighbours(group) {
                 if self.part[other] == part {
                     self.part[other] = usize::MAX;
                     self.level[other] = self.level[group] + 1;
@@ -141,8 +141,8 @@ impl Dissection<'_> {
         }
         let heights = self.heights(cut.heights);
         let beyond = |group: usize| {
-            let mut others = self.graph.neighbours(group).iter();
-            others.any(|&other| self.part[other] == self.part[group] && heights[other] > cut.rank)
+            let mut others = self.graph.neighbours(group);
+            others.any(|other| self.part[other] == self.part[group] && heights[other] > cut.rank)
         };
         let mut parts = [Vec::new(), Vec::new(), Vec::new()];
         for group in found {
@@ -177,9 +177,9 @@ impl Dissection<'_> {
             reaching -= closed;
             for &group in level {
                 let own = self.graph.members(group).len();
-                let same = |&&other: &&usize| self.part[other] == self.part[group];
-                let others = self.graph.neighbours(group).iter().filter(same);
-                let reach = others.map(|&other| heights[other]).max().unwrap_or(0);
+                let same = |&other: &usize| self.part[other] == self.part[group];
+                let others = self.graph.neighbours(group).filter(same);
+                let reach = others.map(|other| heights[other]).max().unwrap_or(0);
                 below += own;
                 if reach > rank {
                     reaching += own;

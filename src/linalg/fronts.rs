@@ -20,7 +20,7 @@
 
 use super::check::SolveError;
 use super::front::{Front, STEPS, substitute, substitute_back, subtract, subtract_all};
-use super::pattern::Pattern;
+use super::pattern::{Pattern, narrow};
 use super::tree::{Node, Tree};
 
 /// A node of the tree, with its factors.
@@ -354,7 +354,6 @@ struct EntryMap {
 
 /// Assigns every entry of the matrix to the front that eliminates the first of its two unknowns.
 fn assign(pattern: &Pattern, tree: &Tree) -> Result<EntryMap, SolveError> {
-    let narrow = |number: usize| u32::try_from(number).map_err(|_| SolveError::OutOfMemory);
     let mut eliminated = vec![0; pattern.size()];
     for (k, node) in tree.nodes.iter().enumerate() {
         node.unknowns[..node.pivots]
@@ -448,7 +447,7 @@ mod tests {
                     }
                 }
             }
-            let pattern = Pattern::new(n, a.keys().copied());
+            let pattern = Pattern::new(n, a.keys().copied()).unwrap();
             let group = |i: usize| match i.checked_sub(first) {
                 Some(force) if apart => nodes + force,
                 Some(force) => force / 2,
@@ -521,7 +520,7 @@ mod tests {
         let apart = case.error(&mut fronts);
         assert!(apart < 1e-10, "{apart}");
         // Every group of the front is a single constraint.
-        let pattern = Pattern::new(4, (0..16).map(|k| (k / 4, k % 4)));
+        let pattern = Pattern::new(4, (0..16).map(|k| (k / 4, k % 4))).unwrap();
         let a = [
             [0.0, 0.0, 1.0, 0.0],
             [0.0, 0.0, 2.0, 1.0],
@@ -552,7 +551,7 @@ mod tests {
         let pairs = |i: usize, j: usize| i >= first && i - first == j;
         let has =
             |&(i, j): &(usize, usize)| (i < first) == (j < first) || pairs(i, j) || pairs(j, i);
-        let pattern = Pattern::new(n, places.filter(has));
+        let pattern = Pattern::new(n, places.filter(has)).unwrap();
         let mut case = Case {
             values: pattern.iter().map(|(i, j)| value(i, j)).collect(),
             pattern,

@@ -13,43 +13,50 @@ pub(super) const NONE: usize = usize::MAX;
 /// The groups, numbered consecutively, and their neighbours.
 pub(super) struct Graph {
     starts: Vec<usize>,
-    members: Vec<usize>,
+    members: Vec<u32>,
     edges: Vec<usize>,
-    neighbours: Vec<usize>,
+    neighbours: Vec<u32>,
     /// Whether a changing row has an entry in a group's columns.
     pub changing: Vec<bool>,
 }
 
 impl Graph {
+    /// `groups` is the group of each unknown, or [`NONE`] for those that are left out. Rows from `first` on may change.
     pub fn new(pattern: &Pattern, groups: &[usize], first: usize) -> Self {
-        let mut number = vec![NONE; groups.iter().max().map_or(0, |most| most + 1)];
+        let known = || groups.iter().copied().filter(|&g| g != NONE);
+        let mut number = vec![NONE; known().max().map_or(0, |most| most + 1)];
         let mut count = 0;
         let mut group = Vec::with_capacity(groups.len());
         for &g in groups {
-            if number[g] == NONE {
+            if g != NONE && number[g] == NONE {
                 number[g] = count;
                 count += 1;
             }
-            group.push(number[g]);
+            group.push(number.get(g).copied().unwrap_or(NONE));
         }
-        let (starts, members) = lists(count, || group.iter().copied().zip(0..));
+        let members = || group.iter().copied().zip(0..).filter(|&(g, _)| g != NONE);
+        let (starts, members) = lists(count, members);
         let mut changing = vec![false; count];
         let mut seen_by = vec![NONE; count];
-        let mut pairs = Vec::new();
+        let mut pairs: Vec<(u32, u32)> = Vec::new();
         for own in 0..count {
             for &column in &members[starts[own]..starts[own + 1]] {
-                for &row in &pattern.row_idx[pattern.col_ptr[column]..pattern.col_ptr[column + 1]] {
-                    let other = group[row];
-                    changing[own] |= row >= first;
-                    if other != own && seen_by[other] != own {
+                for &row in &pattern.row_idx[pattern.column(column as usize)] {
+                    let other = group[row as usize];
+                    changing[own] |= row as usize >= first;
+                    if other != own && other != NONE && seen_by[other] != own {
                         seen_by[other] = own;
-                        pairs.push((own, other));
+                        pairs.push((own as u32, other as u32));
                     }
                 }
             }
         }
         // Symmetric, even if the pattern is not.
-        let both = || pairs.iter().flat_map(|&(a, b)| [(a, b), (b, a)]);
+        let both = || {
+            pairs
+                .iter()
+                .flat_map(|&(a, b)| [(a as usize, b), (b as usize, a)])
+        };
         let (edges, neighbours) = lists(count, both);
         let mut graph = Graph {
             starts,
@@ -85,12 +92,13 @@ impl Graph {
         self.edges.len() - 1
     }
 
-    pub fn members(&self, group: usize) -> &[usize] {
+    pub fn members(&self, group: usize) -> &[u32] {
         &self.members[self.starts[group]..self.starts[group + 1]]
     }
 
-    pub fn neighbours(&self, group: usize) -> &[usize] {
-        &self.neighbours[self.edges[group]..self.edges[group + 1]]
+    pub fn neighbours(&self, group: usize) -> impl Iterator<Item = usize> + '_ {
+        let all = self.neighbours[self.edges[group]..self.edges[group + 1]].iter();
+        all.map(|&other| other as usize)
     }
 
     /// Orders some of the groups for little fill.
@@ -101,8 +109,7 @@ impl Graph {
         for &group in &groups {
             seen.extend(
                 self.neighbours(group)
-                    .iter()
-                    .filter_map(|other| number.get(other)),
+                    .filter_map(|other| number.get(&other)),
             );
             let start = starts[starts.len() - 1];
             seen[start..].sort_unstable();

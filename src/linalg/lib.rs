@@ -21,6 +21,7 @@ mod lu;
 mod order;
 mod pattern;
 mod registers;
+mod substitution;
 mod subtrees;
 mod supernodes;
 mod symmetric;

@@ -70,8 +70,8 @@ enum LuKind {
 
 /// faer's factors.
 struct General {
-    symbolic: SymbolicLu<usize>,
-    numeric: NumericLu<usize, f64>,
+    symbolic: SymbolicLu<u32>,
+    numeric: NumericLu<u32, f64>,
     memory: MemBuffer,
 }
 
@@ -152,7 +152,7 @@ impl Factors {
     /// Copies values of the rows and columns from the `first` of [`Factors::scale`] on.
     pub fn copy_last(&self, from: &[f64], to: &mut [f64]) {
         self.own.iter().for_each(|&k| to[k] = from[k]);
-        let columns = self.pattern.col_ptr[self.first_own]..;
+        let columns = self.pattern.start(self.first_own)..;
         to[columns.clone()].copy_from_slice(&from[columns]);
     }
 
@@ -311,10 +311,11 @@ impl Factors {
         }
         for _ in 0..SWEEPS {
             // The sizes of this sweep; the column scales change only after all sizes are known.
-            for (range, size) in self.pattern.col_ptr.windows(2).zip(&mut self.largest) {
-                let rows = &self.pattern.row_idx[range[0]..range[1]];
-                let entries = self.exponents[range[0]..range[1]].iter().zip(rows);
-                let largest = entries.map(|(exponent, &row)| exponent + self.scale[row]);
+            for (col, size) in self.largest.iter_mut().enumerate() {
+                let range = self.pattern.column(col);
+                let entries = self.exponents[range.clone()].iter();
+                let entries = entries.zip(&self.pattern.row_idx[range]);
+                let largest = entries.map(|(exponent, &row)| exponent + self.scale[row as usize]);
                 *size = largest.fold(i32::MIN, i32::max);
             }
             let mut settled = true;
@@ -370,12 +371,12 @@ impl Factors {
 
     fn apply_scale(&mut self) {
         for col in 0..self.pattern.n {
-            let range = self.pattern.col_ptr[col]..self.pattern.col_ptr[col + 1];
+            let range = self.pattern.column(col);
             let rows = &self.pattern.row_idx[range.clone()];
             let own = self.col_scale[col];
             let values = self.scaled[range.clone()].iter_mut();
             for ((scaled, value), &row) in values.zip(&self.values[range]).zip(rows) {
-                *scaled = value * own * self.row_scale[row];
+                *scaled = value * own * self.row_scale[row as usize];
             }
         }
     }
@@ -443,7 +444,7 @@ mod tests {
     const ONES: [f64; 3] = [1.0; 3];
 
     fn dense(n: usize, a: &[f64]) -> (Arc<Pattern>, Vec<f64>) {
-        let pattern = Pattern::new(n, (0..n * n).map(|k| (k / n, k % n)));
+        let pattern = Pattern::new(n, (0..n * n).map(|k| (k / n, k % n))).unwrap();
         let values = pattern.iter().map(|(r, c)| a[r * n + c]).collect();
         (Arc::new(pattern), values)
     }

@@ -2,7 +2,7 @@
 
 use super::check::SolveError;
 use super::dissection;
-use super::graph::{Graph, least_fill};
+use super::graph::{Graph, NONE, least_fill};
 use super::pattern::Pattern;
 use super::tree::in_postorder;
 
@@ -15,53 +15,50 @@ pub(super) fn order(
     last: &[usize],
     positions: &[[f64; 2]],
 ) -> Result<Vec<usize>, SolveError> {
-    const LAST: usize = usize::MAX;
-    let n = pattern.n;
-    let mut number = vec![0; n];
+    let mut number = vec![0; pattern.n];
     for &i in last {
-        number[i] = LAST;
+        number[i] = NONE;
     }
-    let mut inner = Vec::with_capacity(n - last.len());
+    let mut inner = Vec::with_capacity(pattern.n - last.len());
     for (i, number) in number.iter_mut().enumerate() {
-        if *number != LAST {
+        if *number != NONE {
             *number = inner.len();
             inner.push(i);
         }
     }
-    let (mut starts, mut rows) = (vec![0], Vec::new());
-    for &column in &inner {
-        let range = pattern.col_ptr[column]..pattern.col_ptr[column + 1];
-        let entries = pattern.row_idx[range].iter().map(|&row| number[row]);
-        rows.extend(entries.filter(|&row| row != LAST));
-        starts.push(rows.len());
-    }
-    let forward = match positions.is_empty() || inner.len() < LARGE {
-        true => least_fill(&starts, &rows)?,
-        false => {
-            let inside = Pattern {
-                n: inner.len(),
-                col_ptr: starts,
-                row_idx: rows,
-            };
-            let positions = inner.iter().map(|&unknown| positions[unknown]);
-            dissected(&inside, &positions.collect::<Vec<_>>())?
+    let mut order = match positions.is_empty() || inner.len() < LARGE {
+        true => {
+            let (mut starts, mut rows) = (vec![0], Vec::new());
+            for &column in &inner {
+                let entries = pattern.row_idx[pattern.column(column)].iter();
+                let entries = entries.map(|&row| number[row as usize]);
+                rows.extend(entries.filter(|&row| row != NONE));
+                starts.push(rows.len());
+            }
+            let order = least_fill(&starts, &rows)?;
+            order.iter().map(|&k| inner[k]).collect()
         }
+        false => dissected(pattern, &inner, positions)?,
     };
-    let reduced = forward.iter().map(|&k| inner[k]);
-    Ok(reduced.chain(last.iter().copied()).collect())
+    order.extend_from_slice(last);
+    Ok(order)
 }
 
-/// The unknowns by nested dissection; consecutive ones at the same position are eliminated together.
-fn dissected(pattern: &Pattern, positions: &[[f64; 2]]) -> Result<Vec<usize>, SolveError> {
-    let (mut groups, mut of_groups) = (Vec::with_capacity(pattern.n), Vec::new());
-    for &position in positions {
-        if of_groups.last() != Some(&position) {
-            of_groups.push(position);
+/// Some unknowns by nested dissection; consecutive ones at the same position are eliminated together.
+fn dissected(
+    pattern: &Pattern,
+    unknowns: &[usize],
+    positions: &[[f64; 2]],
+) -> Result<Vec<usize>, SolveError> {
+    let (mut groups, mut of_groups) = (vec![NONE; pattern.n], Vec::new());
+    for &unknown in unknowns {
+        if of_groups.last() != Some(&positions[unknown]) {
+            of_groups.push(positions[unknown]);
         }
-        groups.push(of_groups.len() - 1);
+        groups[unknown] = of_groups.len() - 1;
     }
     let graph = Graph::new(pattern, &groups, pattern.n);
     let order = in_postorder(&graph, dissection::order(&graph, &of_groups)?);
     let members = order.iter().flat_map(|&group| graph.members(group));
-    Ok(members.copied().collect())
+    Ok(members.map(|&unknown| unknown as usize).collect())
 }

@@ -1,21 +1,31 @@
 //! Patterns of sparse matrices, and matrix-vector products.
 
+use super::check::SolveError;
 use faer::sparse::SymbolicSparseColMatRef;
 use std::ops::Range;
 
-/// Pattern of a square sparse matrix: compressed columns with ascending rows.
+/// Pattern of a square sparse matrix: compressed columns with ascending rows. Indices have four bytes, because large matrices
+/// are limited by memory.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Pattern {
     pub(super) n: usize,
-    pub(super) col_ptr: Vec<usize>,
-    pub(super) row_idx: Vec<usize>,
+    col_ptr: Vec<u32>,
+    pub(super) row_idx: Vec<u32>,
 }
 
 impl Pattern {
     /// The pattern of an n by n matrix with these `(row, column)` entries, in any order, possibly repeated. They are iterated
     /// twice.
-    pub fn new(n: usize, entries: impl Iterator<Item = (usize, usize)> + Clone) -> Self {
-        let (starts, mut rows) = lists(n, || entries.clone().map(|(row, col)| (col, row)));
+    ///
+    /// # Errors
+    /// [`SolveError::OutOfMemory`] if an index needs more than four bytes.
+    pub fn new(
+        n: usize,
+        entries: impl Iterator<Item = (usize, usize)> + Clone,
+    ) -> Result<Self, SolveError> {
+        narrow(n)?;
+        let by_column = || entries.clone().map(|(row, col)| (col, row as u32));
+        let (starts, mut rows) = lists(n, by_column);
         let mut col_ptr = Vec::with_capacity(n + 1);
         col_ptr.push(0);
         let mut end = 0;
@@ -27,15 +37,15 @@ impl Pattern {
                     end += 1;
                 }
             }
-            col_ptr.push(end);
+            col_ptr.push(narrow(end)?);
         }
         rows.truncate(end);
         rows.shrink_to_fit();
-        Pattern {
+        Ok(Pattern {
             n,
             col_ptr,
             row_idx: rows,
-        }
+        })
     }
 
     /// Number of rows and of columns.
@@ -48,13 +58,21 @@ impl Pattern {
         self.row_idx.len()
     }
 
+    /// Index of the first entry of a column in the array of values.
+    pub fn start(&self, column: usize) -> usize {
+        self.col_ptr[column] as usize
+    }
+
+    /// The entries of a column in the array of values.
+    pub(super) fn column(&self, column: usize) -> Range<usize> {
+        self.start(column)..self.start(column + 1)
+    }
+
     /// Index of an entry in the array of values, if the pattern has it.
     pub fn slot(&self, row: usize, col: usize) -> Option<usize> {
-        let start = self.col_ptr[col];
-        self.row_idx[start..self.col_ptr[col + 1]]
-            .binary_search(&row)
-            .ok()
-            .map(|k| start + k)
+        let range = self.column(col);
+        let place = self.row_idx[range.clone()].binary_search(&(row as u32));
+        place.ok().map(|k| range.start + k)
     }
 
     /// The diagonal blocks without entries outside, as consecutive ranges of unknowns. Works for an upper half like for a full
@@ -64,8 +82,8 @@ impl Pattern {
         // The smallest row in this and all later columns.
         let mut reach = self.n;
         for col in (0..self.n).rev() {
-            let first = self.row_idx[self.col_ptr[col]..self.col_ptr[col + 1]].first();
-            reach = reach.min(col).min(first.copied().unwrap_or(col));
+            let first = self.row_idx[self.column(col)].first();
+            reach = reach.min(first.map_or(col, |&row| col.min(row as usize)));
             if reach == col {
                 starts.push(col);
             }
@@ -82,49 +100,44 @@ impl Pattern {
 
     /// For a symmetric matrix's upper half and a new order of the unknowns: the pattern of the lower half, and the source of each
     /// of its entries.
-    pub(super) fn in_order(&self, order: &[usize]) -> (Pattern, Vec<usize>) {
+    pub(super) fn in_order(&self, order: &[usize]) -> (Pattern, Vec<u32>) {
         let mut place = vec![0; self.n];
-        for (k, &unknown) in order.iter().enumerate() {
+        for (k, &unknown) in (0..).zip(order) {
             place[unknown] = k;
         }
         let entries = self.iter().map(|(i, j)| (place[i], place[j]));
-        let lower = entries.map(|(i, j)| (i.max(j), i.min(j)));
-        let pattern = Pattern::new(self.n, lower.clone());
-        let mut from = vec![0; self.entries()];
-        for (entry, (row, column)) in lower.enumerate() {
-            if let Some(slot) = pattern.slot(row, column) {
-                from[slot] = entry;
-            }
+        let lower = entries.zip(0..).map(|((i, j), entry)| {
+            let (row, column): (u32, u32) = (i.max(j), i.min(j));
+            (column as usize, (row, entry))
+        });
+        let (starts, mut pairs) = lists(self.n, || lower.clone());
+        for range in starts.windows(2) {
+            pairs[range[0]..range[1]].sort_unstable();
         }
+        let (row_idx, from) = pairs.into_iter().unzip();
+        let pattern = Pattern {
+            n: self.n,
+            col_ptr: starts.iter().map(|&start| start as u32).collect(),
+            row_idx,
+        };
         (pattern, from)
     }
 
-    /// The pattern of the transposed matrix.
-    pub(super) fn transposed(&self) -> Pattern {
-        let (col_ptr, row_idx) = lists(self.n, || self.iter());
-        Pattern {
-            n: self.n,
-            col_ptr,
-            row_idx,
-        }
-    }
-
-    /// Index of the first entry of a column in the array of values.
-    pub fn block_start(&self, column: usize) -> usize {
-        self.col_ptr[column]
+    /// The transposed pattern: where each column starts, and its rows.
+    pub(super) fn transposed(&self) -> (Vec<usize>, Vec<usize>) {
+        lists(self.n, || self.iter())
     }
 
     /// The pattern of one of [`Pattern::blocks`], or of consecutive ones, and the range of its values.
     pub fn block(&self, unknowns: Range<usize>) -> (Pattern, Range<usize>) {
-        let values = self.col_ptr[unknowns.start]..self.col_ptr[unknowns.end];
         let columns = &self.col_ptr[unknowns.start..=unknowns.end];
+        let (first, last) = (columns[0], columns[unknowns.len()]);
+        let values = first as usize..last as usize;
+        let rows = self.row_idx[values.clone()].iter();
         let pattern = Pattern {
             n: unknowns.len(),
-            col_ptr: columns.iter().map(|k| k - values.start).collect(),
-            row_idx: self.row_idx[values.clone()]
-                .iter()
-                .map(|row| row - unknowns.start)
-                .collect(),
+            col_ptr: columns.iter().map(|k| k - first).collect(),
+            row_idx: rows.map(|row| row - unknowns.start as u32).collect(),
         };
         (pattern, values)
     }
@@ -132,9 +145,8 @@ impl Pattern {
     /// All entries as `(row, column)`, in the order of the values.
     pub fn iter(&self) -> impl Iterator<Item = (usize, usize)> + Clone + '_ {
         (0..self.n).flat_map(move |col| {
-            self.row_idx[self.col_ptr[col]..self.col_ptr[col + 1]]
-                .iter()
-                .map(move |&row| (row, col))
+            let rows = self.row_idx[self.column(col)].iter();
+            rows.map(move |&row| (row as usize, col))
         })
     }
 
@@ -142,9 +154,9 @@ impl Pattern {
     pub fn multiply(&self, values: &[f64], x: &[f64], y: &mut [f64]) {
         y.fill(0.0);
         for (col, &xc) in x.iter().enumerate() {
-            let range = self.col_ptr[col]..self.col_ptr[col + 1];
+            let range = self.column(col);
             for (&value, &row) in values[range.clone()].iter().zip(&self.row_idx[range]) {
-                y[row] += value * xc;
+                y[row as usize] += value * xc;
             }
         }
     }
@@ -170,10 +182,10 @@ impl Pattern {
     ) {
         y.fill(0.0);
         for (col, &xc) in x.iter().enumerate() {
-            let range = self.col_ptr[col]..self.col_ptr[col + 1];
+            let range = self.column(col);
             let (values, rows) = (&values[range.clone()], &self.row_idx[range]);
             for (&value, &row) in values.iter().zip(rows) {
-                y[row] += term(value, xc);
+                y[row as usize] += term(value, xc);
             }
             if half {
                 let of_others = |value, row| if row == col { 0.0 } else { term(value, x[row]) };
@@ -184,15 +196,15 @@ impl Pattern {
 }
 
 /// Sum of the terms of values and their rows, in four parts that do not wait for each other.
-fn sum_of(values: &[f64], rows: &[usize], term: impl Fn(f64, usize) -> f64) -> f64 {
+fn sum_of(values: &[f64], rows: &[u32], term: impl Fn(f64, usize) -> f64) -> f64 {
     const PARTS: usize = 4;
     let mut sums = [0.0; PARTS];
     let (values, rows) = (values.chunks_exact(PARTS), rows.chunks_exact(PARTS));
     let rest = values.remainder().iter().zip(rows.remainder());
-    let rest: f64 = rest.map(|(&value, &row)| term(value, row)).sum();
+    let rest: f64 = rest.map(|(&value, &row)| term(value, row as usize)).sum();
     for (values, rows) in values.zip(rows) {
         for ((sum, &value), &row) in sums.iter_mut().zip(values).zip(rows) {
-            *sum += term(value, row);
+            *sum += term(value, row as usize);
         }
     }
     sums.iter().sum::<f64>() + rest
@@ -217,8 +229,16 @@ pub(super) fn lists<T: Copy + Default, P: Iterator<Item = (usize, T)>>(
     (starts, values)
 }
 
+/// An index with four bytes.
+///
+/// # Errors
+/// [`SolveError::OutOfMemory`] if it needs more.
+pub(super) fn narrow(index: usize) -> Result<u32, SolveError> {
+    u32::try_from(index).map_err(|_| SolveError::OutOfMemory)
+}
+
 /// The pattern in faer's form.
-pub(super) fn symbolic_view(pattern: &Pattern) -> SymbolicSparseColMatRef<'_, usize> {
+pub(super) fn symbolic_view(pattern: &Pattern) -> SymbolicSparseColMatRef<'_, u32> {
     SymbolicSparseColMatRef::new_checked(
         pattern.n,
         pattern.n,
@@ -244,10 +264,11 @@ mod tests {
             (4, 5),
             (5, 5),
         ];
-        let pattern = Pattern::new(6, entries.into_iter());
+        let pattern = Pattern::new(6, entries.into_iter()).unwrap();
         assert_eq!(pattern.blocks(), [0..3, 3..4, 4..6]);
         let (block, values) = pattern.block(4..6);
-        assert_eq!(block, Pattern::new(2, [(0, 0), (0, 1), (1, 1)].into_iter()));
+        let expected = Pattern::new(2, [(0, 0), (0, 1), (1, 1)].into_iter());
+        assert_eq!(Ok(block), expected);
         let all: Vec<_> = pattern.iter().collect();
         assert_eq!(all[values], [(4, 4), (4, 5), (5, 5)]);
     }
@@ -264,7 +285,7 @@ mod tests {
             (2, 2),
             (1, 0),
         ];
-        let pattern = Pattern::new(3, entries.into_iter());
+        let pattern = Pattern::new(3, entries.into_iter()).unwrap();
         let all: Vec<_> = pattern.iter().collect();
         assert_eq!(all, [(0, 0), (1, 0), (2, 0), (0, 2), (2, 2)]);
         assert_eq!((pattern.entries(), pattern.slot(0, 2)), (5, Some(3)));

@@ -85,10 +85,10 @@ impl Subtree {
         }
     }
 
-    /// Whether there is parallel work.
-    #[cfg(test)]
-    pub fn is_split(&self) -> bool {
-        self.halves.is_some()
+    /// The supernodes of the two parts that do not change each other, if there are any.
+    pub fn parts(&self) -> Option<[Range<usize>; 2]> {
+        let [first, second] = self.halves.as_deref()?;
+        Some([0..first.top.end, first.top.end..second.top.end])
     }
 
     fn whole(l: &Supernodes, top: Range<usize>) -> Self {
@@ -221,7 +221,8 @@ impl Workspace {
     /// Finds the row of each unknown of a supernode.
     fn find_places(&mut self, l: &Supernodes, s: usize) {
         let own = l.nodes[s].columns.clone();
-        for (k, row) in (0..).zip(own.chain(l.rows(s).iter().copied())) {
+        let below = l.rows(s).iter().map(|&row| row as usize);
+        for (k, row) in (0..).zip(own.chain(below)) {
             self.place[row] = k;
         }
     }
@@ -270,10 +271,10 @@ impl Sum<'_> {
         let height = self.l.nodes[self.s].height();
         for (column, out) in columns.clone().zip(out.chunks_exact_mut(height)) {
             let pattern = self.matrix.pattern;
-            let entries = pattern.col_ptr[column]..pattern.col_ptr[column + 1];
+            let entries = pattern.column(column);
             let rows = &pattern.row_idx[entries.clone()];
             for (value, &row) in self.matrix.values[entries].iter().zip(rows) {
-                out[self.place[row] as usize] += value;
+                out[self.place[row as usize] as usize] += value;
             }
         }
         for &d in self.l.earlier(self.s) {
@@ -309,10 +310,10 @@ impl Sum<'_> {
             registers::release();
             let places = &mut room.places[..count];
             for (place, &row) in places.iter_mut().zip(&rows[start..]) {
-                *place = self.place[row];
+                *place = self.place[row as usize];
             }
             for (k, column) in result.chunks_exact(count).enumerate() {
-                let to = (rows[k] - columns.start) * height;
+                let to = (rows[k] as usize - columns.start) * height;
                 let to = &mut out[to..to + height];
                 let above = k.saturating_sub(start);
                 subtract_at(to, &column[above..], &places[above..]);

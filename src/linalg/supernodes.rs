@@ -19,7 +19,7 @@ pub(super) struct Supernodes {
     pub nodes: Vec<Supernode>,
     /// The supernode of each column.
     node_of: Vec<usize>,
-    rows: Vec<usize>,
+    rows: Vec<u32>,
     /// The earlier supernodes with rows among the columns of each one, ascending: where each list starts, and the lists.
     starts: Vec<usize>,
     earlier: Vec<usize>,
@@ -32,7 +32,7 @@ pub(super) struct Column<'a> {
     /// Entries of the supernode's own rows below the diagonal, and of `rows`.
     pub own: &'a [f64],
     pub below: &'a [f64],
-    pub rows: &'a [usize],
+    pub rows: &'a [u32],
 }
 
 impl Supernode {
@@ -57,13 +57,14 @@ impl Supernodes {
         let count = symbolic.n_supernodes();
         let values = symbolic.col_ptr_for_val();
         let mut nodes = Vec::with_capacity(count);
-        let (mut node_of, mut rows) = (vec![0; symbolic.nrows()], Vec::new());
+        let mut node_of = vec![0; symbolic.nrows()];
+        let mut rows: Vec<u32> = Vec::new();
         for s in 0..count {
             let node = symbolic.supernode(s);
             let columns = node.start()..symbolic.supernode_end()[s];
             node_of[columns.clone()].fill(s);
             let first = rows.len();
-            rows.extend_from_slice(node.pattern());
+            rows.extend(node.pattern().iter().map(|&row| row as u32));
             nodes.push(Supernode {
                 columns,
                 rows: first..rows.len(),
@@ -72,7 +73,8 @@ impl Supernodes {
         }
         let mut pairs: Vec<(usize, usize)> = Vec::new();
         for (d, node) in nodes.iter().enumerate() {
-            let reached = rows[node.rows.clone()].iter().map(|&row| node_of[row]);
+            let reached = rows[node.rows.clone()].iter();
+            let reached = reached.map(|&row| node_of[row as usize]);
             pairs.extend(reached.map(|s| (s, d)));
         }
         pairs.dedup();
@@ -86,16 +88,26 @@ impl Supernodes {
         }
     }
 
+    /// The range of the values of consecutive supernodes.
+    pub fn values(&self, nodes: &Range<usize>) -> Range<usize> {
+        let all = &self.nodes[nodes.clone()];
+        all.first().map_or(0, |node| node.values.start)
+            ..all.last().map_or(0, |node| node.values.end)
+    }
+
     /// The rows below a supernode's columns.
-    pub fn rows(&self, s: usize) -> &[usize] {
+    pub fn rows(&self, s: usize) -> &[u32] {
         &self.rows[self.nodes[s].rows.clone()]
     }
 
     /// The rows of a supernode from the first of these columns on, and how many are among the columns.
-    pub fn shared(&self, d: usize, columns: &Range<usize>) -> (&[usize], usize) {
+    pub fn shared(&self, d: usize, columns: &Range<usize>) -> (&[u32], usize) {
         let rows = self.rows(d);
-        let rows = &rows[rows.partition_point(|&row| row < columns.start)..];
-        (rows, rows.partition_point(|&row| row < columns.end))
+        let rows = &rows[rows.partition_point(|&row| (row as usize) < columns.start)..];
+        (
+            rows,
+            rows.partition_point(|&row| (row as usize) < columns.end),
+        )
     }
 
     /// The supernodes that change a later one.
@@ -105,7 +117,7 @@ impl Supernodes {
 
     /// The first supernode that one changes.
     pub fn parent(&self, s: usize) -> Option<usize> {
-        self.rows(s).first().map(|&row| self.node_of[row])
+        self.rows(s).first().map(|&row| self.node_of[row as usize])
     }
 
     /// The columns from `first` on, in elimination order.

@@ -24,11 +24,13 @@
 use super::check::{SolveError, UNDERFLOW, largest};
 use super::executor::Executor;
 use super::order::order;
-use super::pattern::{Pattern, symbolic_view};
-use super::registers::{self, vectorise};
+use super::pattern::Pattern;
+use super::registers;
+use super::substitution::Substitution;
 use super::subtrees::{LowerHalf, Subtree, Workspace};
 use super::supernodes::Supernodes;
 use faer::linalg::matmul::triangular::{BlockStructure, matmul};
+use faer::sparse::SymbolicSparseColMatRef;
 use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, SymbolicCholeskyRaw, SymmetricOrdering, factorize_symbolic_cholesky,
@@ -43,7 +45,7 @@ const BACKWARD_LIMIT: f64 = 1e-12;
 pub struct SymmetricFactors {
     /// Pattern of the lower half in elimination order, and the source of each of its entries.
     pattern: Pattern,
-    from: Vec<usize>,
+    from: Vec<u32>,
     l: Supernodes,
     tree: Subtree,
     rooms: Vec<Workspace>,
@@ -62,8 +64,7 @@ pub struct SymmetricFactors {
     pivots: Vec<f64>,
     /// y, then u, in elimination order.
     moved: Vec<f64>,
-    /// Contribution of a supernode's columns to the rows below it.
-    below: Vec<f64>,
+    substitution: Substitution,
     /// L_cc, and D_c L_ccᵀ, column-major.
     lower: Vec<f64>,
     upper: Vec<f64>,
@@ -88,24 +89,21 @@ impl SymmetricFactors {
             supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
             ..Default::default()
         };
-        let symbolic = factorize_symbolic_cholesky(
-            symbolic_view(&lower.transposed()),
-            Side::Upper,
-            SymmetricOrdering::Identity,
-            params,
-        )
-        .map_err(|_| SolveError::OutOfMemory)?;
+        let (starts, columns) = lower.transposed();
+        let upper = SymbolicSparseColMatRef::new_checked(n, n, &starts, None, &columns);
+        let symbolic =
+            factorize_symbolic_cholesky(upper, Side::Upper, SymmetricOrdering::Identity, params)
+                .map_err(|_| SolveError::OutOfMemory)?;
         let SymbolicCholeskyRaw::Supernodal(raw) = symbolic.raw() else {
             unreachable!("the symbolic part must be supernodal")
         };
         let l = Supernodes::from_symbolic(raw);
         let tree = Subtree::new(&l);
-        let rows = (0..l.nodes.len()).map(|s| l.rows(s).len());
-        let below = rows.max().unwrap_or(0);
         let diagonal = (n - last.len()..n)
             .map(|place| lower.slot(place, place).ok_or(SolveError::Singular))
             .collect::<Result<_, _>>()?;
         Ok(SymmetricFactors {
+            substitution: Substitution::new(&l, &tree),
             factors: vec![0.0; symbolic.len_val()],
             rooms: (0..tree.leaves)
                 .map(|_| Workspace::new(&l))
@@ -117,7 +115,6 @@ impl SymmetricFactors {
             residual: vec![0.0; n],
             pivots: vec![0.0; n],
             moved: vec![0.0; n],
-            below: vec![0.0; below],
             lower: vec![0.0; last.len().pow(2)],
             upper: vec![0.0; last.len().pow(2)],
             last: last.to_vec(),
@@ -142,7 +139,7 @@ impl SymmetricFactors {
     ) -> Result<(), SolveError> {
         self.ready = false;
         for (value, &k) in self.values.iter_mut().zip(&self.from) {
-            *value = values[k];
+            *value = values[k as usize];
         }
         for &k in &self.diagonal {
             self.values[k] += shift;
@@ -186,7 +183,7 @@ impl SymmetricFactors {
             let size = column.pivot.abs();
             sums[column.place] += size;
             let rows = column.place + 1..column.place + 1 + column.own.len();
-            let rows = rows.chain(column.rows.iter().copied());
+            let rows = rows.chain(column.rows.iter().map(|&row| row as usize));
             for (row, l) in rows.zip(column.own.iter().chain(column.below)) {
                 sums[row] += l * l * size;
             }
@@ -200,12 +197,9 @@ impl SymmetricFactors {
     }
 
     /// r̃ of a right-hand side, in the order of `last`; [`SymmetricFactors::recover`] continues with it.
-    pub fn condense(&mut self, b: &[f64], out: &mut [f64]) {
+    pub fn condense(&mut self, b: &[f64], out: &mut [f64], executor: &dyn Executor) {
         let inner = self.inner();
-        for (moved, &unknown) in self.moved.iter_mut().zip(&self.order) {
-            *moved = b[unknown];
-        }
-        self.forward(inner);
+        self.forward(b, inner, executor);
         out.copy_from_slice(&self.moved[inner..]);
     }
 
@@ -213,11 +207,17 @@ impl SymmetricFactors {
     ///
     /// # Errors
     /// [`SolveError::Singular`] if x is not finite or the residual in the other equations exceeds round-off.
-    pub fn recover(&mut self, b: &[f64], known: &[f64], x: &mut [f64]) -> Result<(), SolveError> {
+    pub fn recover(
+        &mut self,
+        b: &[f64],
+        known: &[f64],
+        x: &mut [f64],
+        executor: &dyn Executor,
+    ) -> Result<(), SolveError> {
         let inner = self.inner();
         self.divide(inner);
         self.moved[inner..].copy_from_slice(known);
-        self.backward(inner);
+        self.backward(inner, executor);
         self.check(inner, b, x)
     }
 
@@ -225,79 +225,38 @@ impl SymmetricFactors {
     ///
     /// # Errors
     /// [`SolveError::Singular`] if x is not finite or its residual exceeds round-off.
-    pub fn solve(&mut self, b: &[f64], x: &mut [f64]) -> Result<(), SolveError> {
+    pub fn solve(
+        &mut self,
+        b: &[f64],
+        x: &mut [f64],
+        executor: &dyn Executor,
+    ) -> Result<(), SolveError> {
         let n = self.pattern.n;
-        for (moved, &unknown) in self.moved.iter_mut().zip(&self.order) {
-            *moved = b[unknown];
-        }
-        self.forward(n);
+        self.forward(b, n, executor);
         self.divide(n);
-        self.backward(n);
+        self.backward(n, executor);
         self.check(n, b, x)
     }
 
-    /// Forward substitution L y = b in the first `count` columns, which also updates the later rows.
-    fn forward(&mut self, count: usize) {
-        vectorise(
-            #[inline(always)]
-            || self.substitute(count),
-        );
+    /// y of a right-hand side, in `moved`.
+    fn forward(&mut self, b: &[f64], count: usize, executor: &dyn Executor) {
+        for (moved, &unknown) in self.moved.iter_mut().zip(&self.order) {
+            *moved = b[unknown];
+        }
+        let l = (&self.l, &self.factors[..]);
+        let substitution = &mut self.substitution;
+        substitution.forward(l, &mut self.moved, count, executor);
     }
 
-    #[inline(always)]
-    fn substitute(&mut self, count: usize) {
-        for (s, node) in self.l.nodes.iter().enumerate() {
-            let (start, width, rows) = (node.columns.start, node.width(), self.l.rows(s));
-            let columns = count.saturating_sub(start).min(width);
-            if columns == 0 {
-                break;
-            }
-            let below = &mut self.below[..rows.len()];
-            below.fill(0.0);
-            let own = &mut self.moved[node.columns.clone()];
-            for k in 0..columns {
-                let (column, value) = (node.column(&self.factors, k), own[k]);
-                add(&mut own[k + 1..], -value, &column[k + 1..width]);
-                add(below, value, &column[width..]);
-            }
-            for (&row, below) in rows.iter().zip(below) {
-                self.moved[row] -= *below;
-            }
-        }
+    fn backward(&mut self, count: usize, executor: &dyn Executor) {
+        let l = (&self.l, &self.factors[..]);
+        let substitution = &mut self.substitution;
+        substitution.backward(l, &mut self.moved, count, executor);
     }
 
     fn divide(&mut self, count: usize) {
         for (value, pivot) in self.moved[..count].iter_mut().zip(&self.pivots) {
             *value /= pivot;
-        }
-    }
-
-    /// Back substitution Lᵀ u = y in the first `count` columns, with known u in the others.
-    fn backward(&mut self, count: usize) {
-        vectorise(
-            #[inline(always)]
-            || self.substitute_back(count),
-        );
-    }
-
-    #[inline(always)]
-    fn substitute_back(&mut self, count: usize) {
-        for (s, node) in self.l.nodes.iter().enumerate().rev() {
-            let (start, width, rows) = (node.columns.start, node.width(), self.l.rows(s));
-            let columns = count.saturating_sub(start).min(width);
-            if columns == 0 {
-                continue;
-            }
-            let below = &mut self.below[..rows.len()];
-            for (below, &row) in below.iter_mut().zip(rows) {
-                *below = self.moved[row];
-            }
-            let own = &mut self.moved[node.columns.clone()];
-            for k in (0..columns).rev() {
-                let column = node.column(&self.factors, k);
-                let sum = dot(&column[width..], below) + dot(&column[k + 1..width], &own[k + 1..]);
-                own[k] -= sum;
-            }
         }
     }
 
@@ -340,7 +299,7 @@ impl SymmetricFactors {
         for column in self.l.columns(&self.factors, first) {
             let to = column.place - first;
             let own = (to + 1..to + 1 + column.own.len()).zip(column.own);
-            let rest = column.rows.iter().map(|row| row - first);
+            let rest = column.rows.iter().map(|&row| row as usize - first);
             for (from, l) in own.chain(rest.zip(column.below)) {
                 self.lower[to * c + from] = *l;
                 self.upper[from * c + to] = l * column.pivot;
@@ -368,30 +327,6 @@ impl SymmetricFactors {
     }
 }
 
-/// y = y + a x.
-#[inline(always)]
-fn add(y: &mut [f64], a: f64, x: &[f64]) {
-    for (y, x) in y.iter_mut().zip(x) {
-        *y += a * x;
-    }
-}
-
-/// Uses eight sums, so that the processor can vectorise it.
-#[inline(always)]
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    const LANES: usize = 8;
-    let mut sums = [0.0; LANES];
-    let (a, b) = (a.chunks_exact(LANES), b.chunks_exact(LANES));
-    let rest = a.remainder().iter().zip(b.remainder());
-    let rest: f64 = rest.map(|(a, b)| a * b).sum();
-    for (a, b) in a.zip(b) {
-        for ((sum, a), b) in sums.iter_mut().zip(a).zip(b) {
-            *sum += a * b;
-        }
-    }
-    sums.iter().sum::<f64>() + rest
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -413,7 +348,7 @@ mod tests {
         }
         let places = (0..n).flat_map(|i| (i..n).map(move |j| (i, j)));
         let entries = places.filter(|&place| a[place] != 0.0);
-        (Arc::new(Pattern::new(n, entries)), a)
+        (Arc::new(Pattern::new(n, entries).unwrap()), a)
     }
 
     fn values(pattern: &Pattern, a: &DMatrix<f64>) -> Vec<f64> {
@@ -440,14 +375,16 @@ mod tests {
             assert!(error < 1e-11 * schur.amax(), "pull {pull}: {error}");
             let b = DVector::from_fn(81, |i, _| (i as f64).sin());
             let mut x = vec![0.0; 81];
-            factors.solve(b.as_slice(), &mut x).unwrap();
+            factors
+                .solve(b.as_slice(), &mut x, &SequentialExecutor)
+                .unwrap();
             assert!((&a * DVector::from_vec(x) - &b).amax() < 1e-12);
             // Condensation and recovery give the same solution in two passes.
             let (mut load, mut x) = (vec![0.0; c], vec![0.0; 81]);
-            factors.condense(b.as_slice(), &mut load);
+            factors.condense(b.as_slice(), &mut load, &SequentialExecutor);
             let known = schur.clone().lu().solve(&DVector::from_vec(load)).unwrap();
             factors
-                .recover(b.as_slice(), known.as_slice(), &mut x)
+                .recover(b.as_slice(), known.as_slice(), &mut x, &SequentialExecutor)
                 .unwrap();
             assert!((&a * DVector::from_vec(x) - &b).amax() < 1e-11);
         }
@@ -462,7 +399,12 @@ mod tests {
             .unwrap();
         for size in [1e-300, 3e-319] {
             let b: Vec<f64> = (0..81).map(|i| size * f64::from(i).sin()).collect();
-            assert!(factors.solve(&b, &mut [0.0; 81]).is_ok(), "{size:e}");
+            assert!(
+                factors
+                    .solve(&b, &mut [0.0; 81], &SequentialExecutor)
+                    .is_ok(),
+                "{size:e}"
+            );
         }
     }
 
@@ -474,7 +416,7 @@ mod tests {
         let steps = [0, 1, side - 1, side, side + 1, 2 * side];
         let entries = (0..n).flat_map(|i| steps.map(|step| (i, i + step)));
         let entries = entries.filter(|&(_, j)| j < n);
-        let pattern = Arc::new(Pattern::new(n, entries));
+        let pattern = Arc::new(Pattern::new(n, entries).unwrap());
         let value = |(k, (i, j)): (usize, (usize, usize))| {
             let part = (k as f64).sin();
             if i == j { 20.0 + part } else { part }
@@ -487,11 +429,11 @@ mod tests {
         let b: Vec<f64> = (0..n).map(|i| (i as f64).cos()).collect();
         let sizes = [&positions[..], &[]].map(|positions| {
             let mut factors = SymmetricFactors::new(pattern.clone(), &last, positions).unwrap();
-            assert!(factors.tree.is_split());
+            assert!(factors.tree.parts().is_some());
             let mut solve = |executor: &dyn Executor| {
                 let mut x = vec![0.0; n];
                 factors.factor(&values, 0.5, executor).unwrap();
-                factors.solve(&b, &mut x).unwrap();
+                factors.solve(&b, &mut x, executor).unwrap();
                 (factors.factors.clone(), x)
             };
             assert!(solve(&SequentialExecutor) == solve(&Threads));
@@ -502,7 +444,7 @@ mod tests {
 
     #[test]
     fn growth_beyond_round_off_is_detected_when_factoring() {
-        let pattern = Arc::new(Pattern::new(2, [(0, 0), (0, 1), (1, 1)].into_iter()));
+        let pattern = Arc::new(Pattern::new(2, [(0, 0), (0, 1), (1, 1)].into_iter()).unwrap());
         let mut factors = SymmetricFactors::new(pattern, &[1], &[]).unwrap();
         assert!(
             factors
@@ -539,17 +481,21 @@ mod tests {
 
     #[test]
     fn a_vanishing_pivot_is_detected() {
-        let pattern = Arc::new(Pattern::new(2, [(0, 0), (0, 1), (1, 1)].into_iter()));
+        let pattern = Arc::new(Pattern::new(2, [(0, 0), (0, 1), (1, 1)].into_iter()).unwrap());
         let mut factors = SymmetricFactors::new(pattern, &[], &[]).unwrap();
         let told = factors
             .factor(&[1e-30, 1.0, 0.0], 0.0, &SequentialExecutor)
             .is_err()
-            || factors.solve(&[1.0, 2.0], &mut [0.0; 2]).is_err();
+            || factors
+                .solve(&[1.0, 2.0], &mut [0.0; 2], &SequentialExecutor)
+                .is_err();
         assert!(told);
         let singular = factors
             .factor(&[1.0, 2.0, 4.0], 0.0, &SequentialExecutor)
             .is_err()
-            || factors.solve(&[1.0, 1.0], &mut [0.0; 2]).is_err();
+            || factors
+                .solve(&[1.0, 1.0], &mut [0.0; 2], &SequentialExecutor)
+                .is_err();
         assert!(singular);
     }
 }

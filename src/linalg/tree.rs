@@ -84,7 +84,7 @@ impl Tree {
             let groups = own.pivots.iter().chain(&own.later);
             let members = groups.flat_map(|&k| graph.members(order.groups[k]));
             self.nodes.push(Node {
-                unknowns: members.copied().collect(),
+                unknowns: members.map(|&unknown| unknown as usize).collect(),
                 pivots: own.weight,
                 parent: None,
                 places: Vec::new(),
@@ -140,7 +140,7 @@ fn parents(graph: &Graph, order: &Order) -> Vec<usize> {
     // Highest known ancestor of each position: paths are compressed during the walk.
     let mut top = vec![NONE; graph.count()];
     for (k, &group) in order.groups.iter().enumerate() {
-        for &neighbour in graph.neighbours(group) {
+        for neighbour in graph.neighbours(group) {
             let mut at = order.place[neighbour];
             while at < k {
                 let next = std::mem::replace(&mut top[at], k);
@@ -239,8 +239,8 @@ fn join(graph: &Graph, order: &Order) -> Vec<EliminationGroup> {
                 }
             }
         };
-        let seen = graph.neighbours(group).iter();
-        take(&mut own.later, &mut seen.map(|&other| order.place[other]));
+        let seen = graph.neighbours(group);
+        take(&mut own.later, &mut seen.map(|other| order.place[other]));
         for &child in &own.children {
             take(&mut own.later, &mut all[child].later.iter().copied());
             own.changing |= all[child].changing;

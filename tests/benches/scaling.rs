@@ -129,7 +129,7 @@ fn parts(model: &Model, executor: Arc<dyn Executor>) -> (f64, f64) {
     let mut assembly = Assembly::with_executor(model, executor.clone());
     let entries = assembly.entries(dofs);
     let upper = entries.filter(|(row, column)| row <= column);
-    let pattern = Arc::new(Pattern::new(equations, upper));
+    let pattern = Arc::new(Pattern::new(equations, upper).expect("a pattern that fits"));
     assembly.bind(dofs, &pattern, true);
     let masters = model
         .surfaces

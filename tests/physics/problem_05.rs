@@ -182,7 +182,7 @@ fn strain_energy(run: &Run, u: &[f64]) -> f64 {
     let model = run.stepper.model();
     let dofs = &model.dofs;
     let mut assembly = Assembly::new(model);
-    let pattern = Pattern::new(dofs.equations, assembly.entries(dofs));
+    let pattern = Pattern::new(dofs.equations, assembly.entries(dofs)).unwrap();
     assembly.bind(dofs, &pattern, false);
     let zero = vec![0.0; u.len()];
     let (mut force, mut size) = (zero.clone(), zero.clone());

@@ -156,7 +156,7 @@ struct Balance<'a> {
 impl<'a> Balance<'a> {
     fn new(model: &'a Model, state: &'a State) -> Self {
         let mut assembly = Assembly::new(model);
-        let pattern = Pattern::new(model.dofs.equations, assembly.entries(&model.dofs));
+        let pattern = Pattern::new(model.dofs.equations, assembly.entries(&model.dofs)).unwrap();
         assembly.bind(&model.dofs, &pattern, false);
         let all = 0..model.dofs.len();
         let equations = all.filter(|&d| model.dofs.equation[d].is_some()).collect();

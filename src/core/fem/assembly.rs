@@ -23,13 +23,17 @@ const MANY: usize = 1000;
 const BATCH: usize = 128;
 const TOGETHER: usize = 16;
 
+/// Marks entries that are not in the system.
+const ABSENT: u32 = u32::MAX;
+
 /// An element with its positions in the system.
 struct AssembledElement {
     element: Box<dyn Element>,
     /// Degrees of freedom of the scene, in the element's order.
     dofs: Vec<usize>,
-    /// Entries of the element's matrix that are in the system, by number (row by row), with their indices in the array of values.
-    slots: Vec<(u32, u32)>,
+    /// Where the entries of the element's matrix, or of its upper half, are in the array of values, row by row; [`ABSENT`] without
+    /// an equation.
+    slots: Vec<u32>,
     /// Whether any of its degrees of freedom has no equation.
     held: bool,
     /// Its range of the scene's history variables.
@@ -284,7 +288,7 @@ impl Assembly {
                     elements: k..k,
                     first: ScatterMap {
                         dof: if k == 0 { 0 } else { least },
-                        slot: pattern.block_start(start),
+                        slot: pattern.start(start),
                         equation: start,
                     },
                     rooms: Vec::new(),
@@ -605,24 +609,21 @@ fn dofs_of(model: &Model, nodes: &[usize], count: usize) -> Vec<usize> {
 impl AssembledElement {
     fn bind(&mut self, dofs: &Dofs, pattern: &Pattern, half: bool) {
         let equation = |d: &usize| dofs.equation[*d];
-        let n = self.dofs.len();
         self.held = self.dofs.iter().any(|d| equation(d).is_none());
         self.slots.clear();
         for (i, row) in self.dofs.iter().enumerate() {
             // For the upper half, each pair once, regardless of which entry the pattern contains.
             let first = if half { i } else { 0 };
-            for (j, column) in self.dofs.iter().enumerate().skip(first) {
-                let (Some(row), Some(column)) = (equation(row), equation(column)) else {
-                    continue;
+            for column in &self.dofs[first..] {
+                let slot = match (equation(row), equation(column)) {
+                    (Some(row), Some(column)) if half => {
+                        pattern.slot(row.min(column), row.max(column))
+                    }
+                    (Some(row), Some(column)) => pattern.slot(row, column),
+                    _ => None,
                 };
-                let slot = if half {
-                    pattern.slot(row.min(column), row.max(column))
-                } else {
-                    pattern.slot(row, column)
-                };
-                let pair = u32::try_from(i * n + j).ok();
                 let slot = slot.and_then(|slot| u32::try_from(slot).ok());
-                self.slots.extend(pair.zip(slot));
+                self.slots.push(slot.unwrap_or(ABSENT));
             }
         }
     }
@@ -654,8 +655,16 @@ impl AssembledElement {
             out.force[d - first.dof] += force;
             out.size[d - first.dof] += force.abs();
         }
-        for &(entry, slot) in &self.slots {
-            out.values[slot as usize - first.slot] += tangent[entry as usize];
+        let n = self.dofs.len();
+        let is_half = self.slots.len() < n * n;
+        let mut slots = self.slots.iter();
+        for (i, row) in tangent.chunks_exact(n).take(n).enumerate() {
+            let row = &row[if is_half { i } else { 0 }..];
+            for (value, &slot) in row.iter().zip(slots.by_ref()) {
+                if slot != ABSENT {
+                    out.values[slot as usize - first.slot] += value;
+                }
+            }
         }
     }
 

@@ -558,10 +558,11 @@ impl Source for Bodies {
 
     fn stability(&mut self, at: &LinearisationPoint<'_>) -> Stability {
         let (system, model) = (&self.system, &self.model);
-        let tangent = self
-            .tangent
-            .get_or_insert_with(|| Tangent::new(model, system));
-        tangent.stability(system, model, at)
+        if self.tangent.is_none() {
+            self.tangent = Tangent::new(model, system).ok();
+        }
+        let tangent = self.tangent.as_mut();
+        tangent.map_or(Stability::NotKnown, |t| t.stability(system, model, at))
     }
 
     fn stability_cost(&self) -> f64 {

@@ -112,7 +112,7 @@ impl Condensation {
     ) -> Result<Self, SolveError> {
         let n = model.dofs.equations;
         let upper = entries.filter(|(row, column)| row <= column);
-        let pattern = Arc::new(Pattern::new(n, upper));
+        let pattern = Arc::new(Pattern::new(n, upper)?);
         let (way, interface) = match direct_equations(model) {
             Some(equations) => (CondensationPath::Direct, equations),
             None => (CondensationPath::Springs, interface_equations(model)),
@@ -485,8 +485,9 @@ impl Condensation {
         }
         self.far.recover(&self.moved, &mut self.known);
         let (residual, known) = (&self.residual, &self.known);
-        each(&*self.executor, &mut self.parts, &|part| {
-            part.done = part.recover(residual, known);
+        let executor = &*self.executor;
+        each(executor, &mut self.parts, &|part| {
+            part.done = part.recover(residual, known, executor);
         });
         for part in &self.parts {
             part.done?;
@@ -561,12 +562,12 @@ impl BodyGroup {
     ) -> Result<(), SolveError> {
         let residual = &residual[self.equations.clone()];
         if stands {
-            self.factors.condense(residual, &mut self.load);
+            self.factors.condense(residual, &mut self.load, executor);
             return Ok(());
         }
         self.factors
             .factor(&stiffness[self.values.clone()], shift, executor)?;
-        self.factors.condense(residual, &mut self.load);
+        self.factors.condense(residual, &mut self.load, executor);
         self.factors.condensed(&mut self.schur);
         let next = self.unknowns.len() + 1;
         let diagonal = self.schur.iter_mut().step_by(next);
@@ -575,12 +576,18 @@ impl BodyGroup {
     }
 
     /// All displacements, given u_c of the whole interface.
-    fn recover(&mut self, residual: &[f64], interface: &[f64]) -> Result<(), SolveError> {
+    fn recover(
+        &mut self,
+        residual: &[f64],
+        interface: &[f64],
+        executor: &dyn Executor,
+    ) -> Result<(), SolveError> {
         for (known, &k) in self.known.iter_mut().zip(&self.unknowns) {
             *known = interface[k];
         }
         let residual = &residual[self.equations.clone()];
-        self.factors.recover(residual, &self.known, &mut self.moved)
+        let (known, moved) = (&self.known, &mut self.moved);
+        self.factors.recover(residual, known, moved, executor)
     }
 }
 

@@ -215,7 +215,7 @@ impl SparseInterface {
                 }
             }
         }
-        let pattern = Arc::new(Pattern::new(size, entries.iter().copied()));
+        let pattern = Arc::new(Pattern::new(size, entries.iter().copied())?);
         let mut values = vec![0.0; pattern.entries()];
         for (column, unknown) in unknowns.iter().enumerate() {
             let [n, t] = unknown.direction;

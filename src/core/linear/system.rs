@@ -455,7 +455,8 @@ impl System {
         let size = equations + 2 * self.interfaces.len();
         let bodies = self.assembly.entries(&model.dofs);
         let bodies = bodies.chain(self.pressures.entries(&model.dofs));
-        let pattern = Arc::new(Pattern::new(size, bodies.chain(entries.iter().copied())));
+        let entries = bodies.chain(entries.iter().copied());
+        let pattern = Arc::new(Pattern::new(size, entries)?);
         self.whole = Some(Factors::in_groups(pattern, &self.groups(model), equations)?);
         Ok(())
     }

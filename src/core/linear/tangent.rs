@@ -11,7 +11,7 @@ use super::stability::{Conditions, Dense, Stability, ZERO, sliding, smooth};
 use super::system::System;
 use crate::contact::geometric_tangent::{Variation, geometric_tangent};
 use crate::fem::assembly::{Assembly, AssemblyMotion};
-use crate::linalg::{Pattern, SymmetricFactors};
+use crate::linalg::{Pattern, SolveError, SymmetricFactors};
 use crate::model::{Body, BodyKind, Form};
 use crate::{ElementOutput, Mode, Model};
 use nalgebra::DMatrix;
@@ -40,12 +40,15 @@ pub struct Tangent {
 
 impl Tangent {
     /// Sets up the tangent of a model.
-    pub fn new(model: &Model, system: &System) -> Self {
+    ///
+    /// # Errors
+    /// [`SolveError::OutOfMemory`].
+    pub fn new(model: &Model, system: &System) -> Result<Self, SolveError> {
         let mut assembly = Assembly::new(model);
         let entries = assembly.entries(&model.dofs);
         let upper = entries.filter(|(row, column)| row <= column);
         let entries = upper.chain((0..model.dofs.equations).map(|e| (e, e)));
-        let pattern = Arc::new(Pattern::new(model.dofs.equations, entries));
+        let pattern = Arc::new(Pattern::new(model.dofs.equations, entries)?);
         assembly.bind(&model.dofs, &pattern, true);
         let mut lengths = vec![false; model.dofs.equations];
         let mut levers = vec![1.0; model.dofs.equations];
@@ -55,7 +58,7 @@ impl Tangent {
                 levers[*e] = system.sizes.lever(dof).unwrap_or(1.0);
             }
         }
-        Tangent {
+        Ok(Tangent {
             assembly,
             values: vec![0.0; pattern.entries()],
             pattern,
@@ -63,7 +66,7 @@ impl Tangent {
             lengths,
             levers,
             factors: None,
-        }
+        })
     }
 
     /// Stability of the state of the system's last linearisation, with its contacts' modes.
@@ -157,12 +160,11 @@ impl Tangent {
         }
         let (last, factors) = self.factors.as_mut()?;
         let (n, c, shift) = (self.pattern.size(), last.len(), system.spring(model));
-        factors
-            .factor(&self.values, shift, &*system.executor)
-            .ok()?;
+        let executor = &*system.executor;
+        factors.factor(&self.values, shift, executor).ok()?;
         // Growth shows in the solution for almost any right-hand side.
         let (ones, mut x) = (vec![1.0; n], vec![0.0; n]);
-        factors.solve(&ones, &mut x).ok()?;
+        factors.solve(&ones, &mut x, executor).ok()?;
         factors.pivots(&mut x);
         let diagonal = |e: usize| {
             self.pattern

@@ -205,7 +205,7 @@ impl Inverse {
     fn new(matrix: &Matrix) -> Result<Self, NotEliminated> {
         let n = matrix.rows;
         let places = matrix.entries.iter().map(|&(i, j, _)| (i, j));
-        let pattern = Arc::new(Pattern::new(n, places));
+        let pattern = Arc::new(Pattern::new(n, places)?);
         let mut values = vec![0.0; pattern.entries()];
         for &(i, j, v) in &matrix.entries {
             if let Some(slot) = pattern.slot(i, j) {
