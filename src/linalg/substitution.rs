@@ -86,10 +86,12 @@ impl Substitution {
         let (own, later) = b.split_at_mut(rest);
         let (left, right) = own.split_at_mut(second);
         let [room, other] = &mut self.rooms;
-        executor.join(
-            &mut || part(&self.parts[0], 0).forward(left, room),
-            &mut || part(&self.parts[1], second).forward(right, other),
-        );
+        if rest > 0 {
+            executor.join(
+                &mut || part(&self.parts[0], 0).forward(left, room),
+                &mut || part(&self.parts[1], second).forward(right, other),
+            );
+        }
         for ((b, left), right) in later.iter_mut().zip(&room.later).zip(&other.later) {
             *b -= left + right;
         }
@@ -117,10 +119,12 @@ impl Substitution {
         let (left, right) = own.split_at_mut(second);
         let [room, other] = &mut self.rooms;
         part(&self.rest, rest).backward(later, &[], &mut room.below);
-        executor.join(
-            &mut || part(&self.parts[0], 0).backward(left, later, &mut room.below),
-            &mut || part(&self.parts[1], second).backward(right, later, &mut other.below),
-        );
+        if rest > 0 {
+            executor.join(
+                &mut || part(&self.parts[0], 0).backward(left, later, &mut room.below),
+                &mut || part(&self.parts[1], second).backward(right, later, &mut other.below),
+            );
+        }
     }
 }
 

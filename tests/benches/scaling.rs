@@ -127,9 +127,8 @@ fn row(model: &Arc<Model>) {
 fn parts(model: &Model, executor: Arc<dyn Executor>) -> (f64, f64) {
     let (dofs, equations) = (&model.dofs, model.dofs.equations);
     let mut assembly = Assembly::with_executor(model, executor.clone());
-    let entries = assembly.entries(dofs);
-    let upper = entries.filter(|(row, column)| row <= column);
-    let pattern = Arc::new(Pattern::new(equations, upper).expect("a pattern that fits"));
+    let entries = assembly.upper_entries(dofs);
+    let pattern = Arc::new(Pattern::new(equations, entries).expect("a pattern that fits"));
     assembly.bind(dofs, &pattern, true);
     let masters = model
         .surfaces

@@ -5,6 +5,8 @@
 //! same entries in the same order, independent of the executor.
 
 use crate::executor::{Executor, SequentialExecutor, each};
+pub use crate::fem::assembled::AssemblyMotion;
+use crate::fem::assembled::{AssembledElement, AssemblySums, ScatterMap};
 use crate::fem::beam::{self, Section};
 use crate::fem::continuum;
 use crate::fem::element::{Element, Previous};
@@ -22,23 +24,6 @@ use std::sync::Arc;
 const MANY: usize = 1000;
 const BATCH: usize = 128;
 const TOGETHER: usize = 16;
-
-/// Marks entries that are not in the system.
-const ABSENT: u32 = u32::MAX;
-
-/// An element with its positions in the system.
-struct AssembledElement {
-    element: Box<dyn Element>,
-    /// Degrees of freedom of the scene, in the element's order.
-    dofs: Vec<usize>,
-    /// Where the entries of the element's matrix, or of its upper half, are in the array of values, row by row; [`ABSENT`] without
-    /// an equation.
-    slots: Vec<u32>,
-    /// Whether any of its degrees of freedom has no equation.
-    held: bool,
-    /// Its range of the scene's history variables.
-    history: Range<usize>,
-}
 
 /// All elements of all bodies.
 pub struct Assembly {
@@ -78,33 +63,6 @@ struct Group {
     first: ScatterMap,
     /// One for each element of a batch.
     rooms: Vec<Workspace>,
-}
-
-/// Start indices of degrees of freedom, entries of the stiffness, and equations.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-struct ScatterMap {
-    dof: usize,
-    slot: usize,
-    equation: usize,
-}
-
-/// Sums, from given start indices on.
-struct AssemblySums<'a> {
-    first: ScatterMap,
-    out: ElementOutput<'a>,
-}
-
-/// Displacements for an assembly.
-#[derive(Debug, Clone, Copy)]
-pub struct AssemblyMotion<'a> {
-    /// Displacements.
-    pub u: &'a [f64],
-    /// Remaining change of the degrees of freedom without an equation in this major iteration.
-    pub step: &'a [f64],
-    /// Displacements at the last accepted increment.
-    pub before: &'a [f64],
-    /// History variables at that increment: [`history_len`] numbers, all zero before the first.
-    pub history: &'a [f64],
 }
 
 impl Assembly {
@@ -219,6 +177,30 @@ impl Assembly {
         });
         let matrices = self.matrices.iter();
         of_elements.chain(matrices.flat_map(|matrix| matrix.entries(dofs)))
+    }
+
+    /// Those of [`Assembly::entries`] in the upper half.
+    pub fn upper_entries<'a>(
+        &'a self,
+        dofs: &'a Dofs,
+    ) -> impl Iterator<Item = (usize, usize)> + Clone + 'a {
+        let of_elements = self.elements.iter().flat_map(|placed| {
+            let equations = placed.dofs.iter().filter_map(|&d| dofs.equation[d]);
+            let mut equations: Vec<usize> = equations.collect();
+            equations.sort_unstable();
+            let (mut row, mut column) = (0, 0);
+            std::iter::from_fn(move || {
+                let entry = (*equations.get(row)?, *equations.get(column)?);
+                (row, column) = match row == column {
+                    true => (0, column + 1),
+                    false => (row + 1, column),
+                };
+                Some(entry)
+            })
+        });
+        let matrices = self.matrices.iter();
+        let entries = matrices.flat_map(|matrix| matrix.entries(dofs));
+        of_elements.chain(entries.filter(|(row, column)| row <= column))
     }
 
     /// Looks up every entry in a pattern that contains them all, or, for a symmetric stiffness, those of the upper `half`.
@@ -522,43 +504,6 @@ fn side_by_side(
     );
 }
 
-impl AssemblySums<'_> {
-    fn reborrow(&mut self) -> AssemblySums<'_> {
-        AssemblySums {
-            first: self.first,
-            out: ElementOutput {
-                force: &mut *self.out.force,
-                size: &mut *self.out.size,
-                values: &mut *self.out.values,
-                coupling: &mut *self.out.coupling,
-            },
-        }
-    }
-
-    /// Splits the sums at given start indices.
-    fn split_at(&mut self, at: ScatterMap) -> (AssemblySums<'_>, AssemblySums<'_>) {
-        let first = self.first;
-        let out = &mut self.out;
-        let force = out.force.split_at_mut(at.dof - first.dof);
-        let size = out.size.split_at_mut(at.dof - first.dof);
-        let values = out.values.split_at_mut(at.slot - first.slot);
-        let coupling = out.coupling.split_at_mut(at.equation - first.equation);
-        let sums = |first, force, size, values, coupling| AssemblySums {
-            first,
-            out: ElementOutput {
-                force,
-                size,
-                values,
-                coupling,
-            },
-        };
-        (
-            sums(first, force.0, size.0, values.0, coupling.0),
-            sums(at, force.1, size.1, values.1, coupling.1),
-        )
-    }
-}
-
 impl Workspace {
     /// Resizes for an element with `count` degrees of freedom.
     fn hold(&mut self, count: usize) {
@@ -604,96 +549,4 @@ pub fn history_len(model: &Model) -> usize {
 fn dofs_of(model: &Model, nodes: &[usize], count: usize) -> Vec<usize> {
     let of_node = |&n: &usize| (0..count).map(move |k| model.dofs.first[n] + k);
     nodes.iter().flat_map(of_node).collect()
-}
-
-impl AssembledElement {
-    fn bind(&mut self, dofs: &Dofs, pattern: &Pattern, half: bool) {
-        let equation = |d: &usize| dofs.equation[*d];
-        self.held = self.dofs.iter().any(|d| equation(d).is_none());
-        self.slots.clear();
-        for (i, row) in self.dofs.iter().enumerate() {
-            // For the upper half, each pair once, regardless of which entry the pattern contains.
-            let first = if half { i } else { 0 };
-            for column in &self.dofs[first..] {
-                let slot = match (equation(row), equation(column)) {
-                    (Some(row), Some(column)) if half => {
-                        pattern.slot(row.min(column), row.max(column))
-                    }
-                    (Some(row), Some(column)) => pattern.slot(row, column),
-                    _ => None,
-                };
-                let slot = slot.and_then(|slot| u32::try_from(slot).ok());
-                self.slots.push(slot.unwrap_or(ABSENT));
-            }
-        }
-    }
-
-    /// Gathers the element's displacements, and its data at the last accepted increment.
-    fn gather_all<'a>(
-        &self,
-        moved: &AssemblyMotion<'a>,
-        u: &mut [f64],
-        before: &'a mut [f64],
-    ) -> Previous<'a> {
-        self.gather(moved.u, u);
-        let history = &moved.history[self.history.clone()];
-        if !history.is_empty() {
-            self.gather(moved.before, before);
-        }
-        Previous { u: before, history }
-    }
-
-    fn gather(&self, from: &[f64], to: &mut [f64]) {
-        for (to, &d) in to.iter_mut().zip(&self.dofs) {
-            *to = from[d];
-        }
-    }
-
-    fn scatter(&self, force: &[f64], tangent: &[f64], sums: &mut AssemblySums<'_>) {
-        let (first, out) = (sums.first, &mut sums.out);
-        for (&d, force) in self.dofs.iter().zip(force) {
-            out.force[d - first.dof] += force;
-            out.size[d - first.dof] += force.abs();
-        }
-        let n = self.dofs.len();
-        let is_half = self.slots.len() < n * n;
-        let mut slots = self.slots.iter();
-        for (i, row) in tangent.chunks_exact(n).take(n).enumerate() {
-            let row = &row[if is_half { i } else { 0 }..];
-            for (value, &slot) in row.iter().zip(slots.by_ref()) {
-                if slot != ABSENT {
-                    out.values[slot as usize - first.slot] += value;
-                }
-            }
-        }
-    }
-
-    /// Forces due to the steps of degrees of freedom without an equation, by equation from `first` on.
-    fn couple(
-        &self,
-        dofs: &Dofs,
-        tangent: &[f64],
-        step: &[f64],
-        coupling: &mut [f64],
-        first: usize,
-    ) {
-        for (row, &d) in tangent.chunks_exact(self.dofs.len()).zip(&self.dofs) {
-            let Some(equation) = dofs.equation[d] else {
-                continue;
-            };
-            for (value, &other) in row.iter().zip(&self.dofs) {
-                if dofs.equation[other].is_none() {
-                    coupling[equation - first] += value * step[other];
-                }
-            }
-        }
-    }
-
-    /// Sets infinite forces, which no finite force balances. The force scale stays finite, so that the residual is infinite too.
-    fn give_up(&self, sums: &mut AssemblySums<'_>) {
-        let (first, force) = (sums.first.dof, &mut *sums.out.force);
-        self.dofs
-            .iter()
-            .for_each(|&d| force[d - first] = f64::INFINITY);
-    }
 }

@@ -13,7 +13,7 @@ use crate::linalg::Pattern;
 use crate::model::{Body, Dofs, Form, Linear};
 
 /// Index of an entry that is not in the system because it is restrained.
-const NOWHERE: u32 = u32::MAX;
+pub(super) const NOWHERE: u32 = u32::MAX;
 
 /// The matrix, in degrees of freedom of the scene.
 pub struct MatrixElement {

@@ -63,8 +63,9 @@ pub struct Condensation {
     /// r̃ and u_c of all unknowns.
     load: Vec<f64>,
     known: Vec<f64>,
-    /// T. All that follows is about the near unknowns.
-    pub turning: Vec<f64>,
+    /// T, and the places of its entries. All that follows is about the near unknowns.
+    turning: Vec<f64>,
+    turned: Vec<usize>,
     /// A; or S + T, then K'.
     matrix: Vec<f64>,
     /// The matrix to factor.
@@ -101,18 +102,17 @@ struct BodyGroup {
 }
 
 impl Condensation {
-    /// Prepares the bodies' stiffness; `entries` are its positions `(row, column)`, in equations.
+    /// Prepares the bodies' stiffness, given the pattern of its upper half and its [`uncoupled_parts`].
     ///
     /// # Errors
     /// [`SolveError`] if it cannot be analysed.
     pub fn new(
         model: &Model,
-        entries: impl Iterator<Item = (usize, usize)> + Clone,
+        pattern: Arc<Pattern>,
+        ranges: &[Range<usize>],
         executor: Arc<dyn Executor>,
     ) -> Result<Self, SolveError> {
         let n = model.dofs.equations;
-        let upper = entries.filter(|(row, column)| row <= column);
-        let pattern = Arc::new(Pattern::new(n, upper)?);
         let (way, interface) = match direct_equations(model) {
             Some(equations) => (CondensationPath::Direct, equations),
             None => (CondensationPath::Springs, interface_equations(model)),
@@ -125,7 +125,7 @@ impl Condensation {
         let positions = model.positions_of_equations();
         let mut condensation = Condensation {
             way,
-            parts: parts(&pattern, &interface, &positions, &*executor)?,
+            parts: analyse(&pattern, ranges, &interface, &positions, &*executor)?,
             executor,
             pattern,
             far: FarMasters::new(c)?,
@@ -134,6 +134,7 @@ impl Condensation {
             known: vec![0.0; c],
             number,
             turning: vec![0.0; c * c],
+            turned: Vec::new(),
             matrix: vec![0.0; c * c],
             dense: DenseFactors::new(c, z)?,
             inner: vec![0.0; c * c],
@@ -148,8 +149,11 @@ impl Condensation {
         Ok(condensation)
     }
 
-    /// Leaves out the masters that no slave node is over; returns whether they are others than before.
+    /// Leaves out the masters that no slave node is over; returns whether they are others than before. Sets T to zero.
     pub fn choose(&mut self, model: &Model, interfaces: &[Interface]) -> bool {
+        for place in self.turned.drain(..) {
+            self.turning[place] = 0.0;
+        }
         self.is_near.fill(false);
         let links = interfaces.iter().flat_map(|interface| &interface.links);
         let equations = links.filter_map(|link| model.dofs.equation[link.dof]);
@@ -180,14 +184,6 @@ impl Condensation {
     /// The pattern of the upper half of the bodies' stiffness.
     pub fn pattern(&self) -> &Arc<Pattern> {
         &self.pattern
-    }
-
-    /// The equations of the separately factored parts.
-    pub fn parts(&self) -> Vec<Range<usize>> {
-        self.parts
-            .iter()
-            .map(|part| part.equations.clone())
-            .collect()
     }
 
     /// Number of near unknowns.
@@ -348,11 +344,18 @@ impl Condensation {
         }
     }
 
+    /// Adds to an entry of T.
+    pub fn turn(&mut self, place: usize, value: f64) {
+        self.turning[place] += value;
+        self.turned.push(place);
+    }
+
     /// Writes S' + T to `matrix`.
     fn add_turning(&mut self) {
-        let both = self.far.stiffness().iter().zip(&self.turning);
-        for (to, (stiffness, turning)) in self.matrix.iter_mut().zip(both) {
-            *to = turning + stiffness;
+        let stiffness = self.far.stiffness();
+        self.matrix.copy_from_slice(stiffness);
+        for &place in &self.turned {
+            self.matrix[place] = self.turning[place] + stiffness[place];
         }
     }
 
@@ -591,13 +594,8 @@ impl BodyGroup {
     }
 }
 
-/// Groups the bodies into uncoupled parts, prepared in parallel; consecutive small parts are merged.
-fn parts(
-    pattern: &Pattern,
-    interface: &[usize],
-    positions: &[[f64; 2]],
-    executor: &dyn Executor,
-) -> Result<Vec<BodyGroup>, SolveError> {
+/// The equations of the parts that are factored separately: uncoupled bodies, of which consecutive small ones are merged.
+pub fn uncoupled_parts(pattern: &Pattern) -> Vec<Range<usize>> {
     let mut ranges: Vec<Range<usize>> = Vec::new();
     for block in pattern.blocks() {
         match ranges.last_mut() {
@@ -605,7 +603,18 @@ fn parts(
             _ => ranges.push(block),
         }
     }
-    let mut parts: Vec<_> = ranges.into_iter().map(|range| (range, None)).collect();
+    ranges
+}
+
+/// Prepares the parts in parallel.
+fn analyse(
+    pattern: &Pattern,
+    ranges: &[Range<usize>],
+    interface: &[usize],
+    positions: &[[f64; 2]],
+    executor: &dyn Executor,
+) -> Result<Vec<BodyGroup>, SolveError> {
+    let mut parts: Vec<_> = ranges.iter().map(|range| (range.clone(), None)).collect();
     each(executor, &mut parts, &|(range, part)| {
         *part = Some(BodyGroup::new(pattern, range.clone(), interface, positions));
     });

@@ -5,7 +5,7 @@ use super::norms::Norms;
 use super::partners::find_points;
 use super::sizes::ROUND_OFF;
 use super::source::LinearisationPoint;
-use super::system::{Layout, System};
+use super::system::{Layout, System, executor_for, moved};
 use super::violation::violation;
 use crate::Model;
 use crate::linalg::Factors;
@@ -139,30 +139,43 @@ impl System {
         self.balance(model, at);
     }
 
-    /// Computes the round-off of the internal forces, and of lengths that should vanish: the machine precision times |K| |u|. It
-    /// belongs to a linearisation, independent of later changes of forces and loads.
-    pub(super) fn round_off(&mut self, model: &Model, u: &[f64]) {
-        self.floors = [0.0; 2];
-        let Some(pattern) = self.pattern().cloned() else {
-            return;
-        };
-        self.x.fill(0.0);
-        for (d, equation) in model.dofs.equation.iter().enumerate() {
-            if let Some(e) = equation {
-                self.x[*e] = u[d];
-            }
-        }
-        let half = self.layout == Some(Layout::Bodies);
-        pattern.multiply_abs(&self.stiffness, &self.x, &mut self.work, half);
-        let mut worst = [0.0_f64; 2];
-        for (d, equation) in model.dofs.equation.iter().enumerate() {
-            let Some(e) = *equation else { continue };
-            match self.sizes.lever(d) {
-                Some(lever) => worst[0] = larger(worst[0], self.work[e] / lever),
-                None => worst[1] = larger(worst[1], self.work[e]),
-            }
-        }
-        self.floors = worst.map(|worst| ROUND_OFF * f64::EPSILON * worst);
+    /// Computes the internal forces, unless the assembly did, and at the same time their round-off and that of lengths that should
+    /// vanish: the machine precision times |K| |u|. It belongs to a linearisation, independent of later changes of forces and
+    /// loads.
+    pub(super) fn resist(&mut self, model: &Model, at: &LinearisationPoint<'_>) {
+        let pattern = self.pattern().cloned();
+        let (half, u) = (self.layout == Some(Layout::Bodies), at.u);
+        let moved = moved(u, &self.step, at);
+        let (assembly, force, size) = (&mut self.assembly, &mut self.force, &mut self.size);
+        let (stiffness, sizes) = (&self.stiffness, &self.sizes);
+        let (x, work, floors) = (&mut self.x, &mut self.work, &mut self.floors);
+        let entries = pattern.as_ref().map_or(0, |pattern| pattern.entries());
+        executor_for(entries, &*self.executor).join(
+            &mut || {
+                if at.factored.is_some() {
+                    assembly.resist(moved, force, size);
+                }
+            },
+            &mut || {
+                let Some(pattern) = &pattern else { return };
+                x.fill(0.0);
+                for (d, equation) in model.dofs.equation.iter().enumerate() {
+                    if let Some(e) = equation {
+                        x[*e] = u[d];
+                    }
+                }
+                pattern.multiply_abs(stiffness, x, work, half);
+                let mut worst = [0.0_f64; 2];
+                for (d, equation) in model.dofs.equation.iter().enumerate() {
+                    let Some(e) = *equation else { continue };
+                    match sizes.lever(d) {
+                        Some(lever) => worst[0] = larger(worst[0], work[e] / lever),
+                        None => worst[1] = larger(worst[1], work[e]),
+                    }
+                }
+                *floors = worst.map(|worst| ROUND_OFF * f64::EPSILON * worst);
+            },
+        );
     }
 
     /// Largest relative violation of the interface conditions by a state's forces and gaps.

@@ -7,13 +7,13 @@
 use crate::contact::geometric_tangent::{Variation, geometric_tangent};
 use crate::contact::projection::{Projection, projection_at, tangent};
 use crate::contact::stick_point::room;
-use crate::executor::Executor;
+use crate::executor::{Executor, SequentialExecutor};
 use crate::fem::assembly::{Assembly, AssemblyMotion};
 use crate::fem::pressure::Pressures;
 use crate::interface::rows;
 use crate::linalg::{Factors, Pattern, SolveError};
 use crate::linear::border::Border;
-use crate::linear::condensation::Condensation;
+use crate::linear::condensation::{Condensation, uncoupled_parts};
 use crate::linear::coupling::Interface;
 use crate::linear::drag::stiffen;
 use crate::linear::estimate::condensable;
@@ -30,6 +30,8 @@ use std::sync::Arc;
 
 /// An equation whose coefficients are all below this is empty; otherwise the largest is one.
 const EMPTY: f64 = 1e-12;
+/// Matrices with fewer entries are processed by one thread.
+const LARGE: usize = 100_000;
 
 /// Layout of the stiffness.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -52,7 +54,7 @@ enum RotationEffect {
 /// The system linearised at a state.
 pub struct System {
     /// The elements, set up on demand: strategies that only use the contacts do not need them.
-    assembly: Assembly,
+    pub(super) assembly: Assembly,
     laid_out: bool,
     /// Following pressures. They require a new stiffness in every major iteration, and a full, unsymmetric matrix.
     pub(super) pressures: Pressures,
@@ -247,11 +249,7 @@ impl System {
         self.load(model, at);
         self.prescribe(model, at);
         self.take_stiffness(layout, model, at);
-        if let (Layout::Bodies, Some(bodies)) = (layout, &mut self.bodies) {
-            bodies.turning.fill(0.0);
-        }
         self.measure_interfaces(model, at);
-        self.round_off(model, at.u);
         self.balance(model, at);
         Ok(())
     }
@@ -276,10 +274,7 @@ impl System {
         } else if layout == Layout::Whole {
             self.stiffness.copy_from_slice(&self.plain);
         }
-        if at.factored.is_some() {
-            let moved = moved(at.u, &self.step, at);
-            self.assembly.resist(moved, &mut self.force, &mut self.size);
-        }
+        self.resist(model, at);
         if self.stands {
             let moved = moved(about, &self.step, at);
             self.assembly.couple(&model.dofs, moved, &mut self.coupling);
@@ -383,35 +378,51 @@ impl System {
         at: &LinearisationPoint<'_>,
     ) -> Result<(), SolveError> {
         self.link(model, at);
-        if self.bodies.is_none() {
-            self.bodies = Some(Condensation::new(
-                model,
-                self.assembly.entries(&model.dofs),
-                self.executor.clone(),
-            )?);
+        let is_new = self.layout != Some(Layout::Bodies);
+        if is_new {
+            self.lay_out_bodies(model)?;
         }
         let Some(bodies) = &mut self.bodies else {
             return Ok(());
         };
-        let changed = bodies.choose(model, &self.interfaces) || self.layout != Some(Layout::Bodies);
-        if changed {
+        if bodies.choose(model, &self.interfaces) || is_new {
             self.interfaces.iter_mut().for_each(|i| i.placed = false);
-        }
-        if self.layout != Some(Layout::Bodies) {
-            self.taken.clear();
-            let parts = bodies.parts();
-            self.assembly
-                .bind_parts(&model.dofs, bodies.pattern(), true, &parts);
-            self.stiffness.resize(bodies.pattern().entries(), 0.0);
-            for buffer in [&mut self.rhs, &mut self.x, &mut self.work] {
-                buffer.resize(model.dofs.equations, 0.0);
-            }
-            self.layout = Some(Layout::Bodies);
         }
         for interface in &mut self.interfaces {
             let place = |row, column| bodies.place(row, column);
             interface.find_unknowns(model, |e| bodies.number(e), place);
         }
+        Ok(())
+    }
+
+    /// Analyses the bodies, unless that is done, while the elements are bound to their pattern.
+    fn lay_out_bodies(&mut self, model: &Model) -> Result<(), SolveError> {
+        self.taken.clear();
+        let pattern = match &self.bodies {
+            Some(bodies) => bodies.pattern().clone(),
+            None => {
+                let entries = self.assembly.upper_entries(&model.dofs);
+                Arc::new(Pattern::new(model.dofs.equations, entries)?)
+            }
+        };
+        let parts = uncoupled_parts(&pattern);
+        let (executor, bodies) = (&self.executor, &mut self.bodies);
+        let (assembly, mut done) = (&mut self.assembly, Ok(()));
+        executor_for(pattern.entries(), &**executor).join(
+            &mut || {
+                if bodies.is_none() {
+                    let new = Condensation::new(model, pattern.clone(), &parts, executor.clone());
+                    done = new.map(|new| *bodies = Some(new));
+                }
+            },
+            &mut || assembly.bind_parts(&model.dofs, &pattern, true, &parts),
+        );
+        done?;
+        self.stiffness.resize(pattern.entries(), 0.0);
+        for buffer in [&mut self.rhs, &mut self.x, &mut self.work] {
+            buffer.resize(model.dofs.equations, 0.0);
+        }
+        self.layout = Some(Layout::Bodies);
         Ok(())
     }
 
@@ -500,10 +511,8 @@ impl System {
             (&mut self.coupling, &self.step),
             model,
         );
-        let matrix = match (self.layout, &mut self.bodies) {
-            (Some(Layout::Bodies), Some(bodies)) => &mut bodies.turning,
-            _ => &mut self.stiffness,
-        };
+        let mut bodies = self.bodies.as_mut();
+        let mut bodies = bodies.take_if(|_| self.layout == Some(Layout::Bodies));
         for (interface, node) in self.interfaces.iter_mut().zip(at.contacts) {
             if !interface.point.is_empty() {
                 continue;
@@ -534,7 +543,10 @@ impl System {
                         &col.variation,
                     );
                     match interface.pairs[i * count + j] {
-                        Some(slot) if turned == RotationEffect::Both => matrix[slot] -= value,
+                        Some(slot) if turned == RotationEffect::Both => match &mut bodies {
+                            Some(bodies) => bodies.turn(slot, -value),
+                            None => self.stiffness[slot] -= value,
+                        },
                         Some(_) => {}
                         None => self.coupling[equation] -= value * self.step[col.dof],
                     }
@@ -610,8 +622,20 @@ impl System {
     }
 }
 
+/// The executor of tasks that depend on the number of entries of a pattern: starting a second thread must pay off.
+pub(super) fn executor_for(entries: usize, executor: &dyn Executor) -> &dyn Executor {
+    match entries < LARGE {
+        true => &SequentialExecutor,
+        false => executor,
+    }
+}
+
 /// Displacements `u` within the current increment, with the prescribed ones.
-fn moved<'a>(u: &'a [f64], step: &'a [f64], at: &LinearisationPoint<'a>) -> AssemblyMotion<'a> {
+pub(super) fn moved<'a>(
+    u: &'a [f64],
+    step: &'a [f64],
+    at: &LinearisationPoint<'a>,
+) -> AssemblyMotion<'a> {
     AssemblyMotion {
         u,
         step,

@@ -45,9 +45,8 @@ impl Tangent {
     /// [`SolveError::OutOfMemory`].
     pub fn new(model: &Model, system: &System) -> Result<Self, SolveError> {
         let mut assembly = Assembly::new(model);
-        let entries = assembly.entries(&model.dofs);
-        let upper = entries.filter(|(row, column)| row <= column);
-        let entries = upper.chain((0..model.dofs.equations).map(|e| (e, e)));
+        let entries = assembly.upper_entries(&model.dofs);
+        let entries = entries.chain((0..model.dofs.equations).map(|e| (e, e)));
         let pattern = Arc::new(Pattern::new(model.dofs.equations, entries)?);
         assembly.bind(&model.dofs, &pattern, true);
         let mut lengths = vec![false; model.dofs.equations];
