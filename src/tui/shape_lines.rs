@@ -13,6 +13,7 @@ use std::sync::{Arc, Weak};
 use stickslip_core::SurfaceElement;
 use stickslip_core::fem::lagrange;
 use stickslip_core::plane::distance;
+use stickslip_debugger::Frame;
 use stickslip_debugger::explain::model_facts::{self, solid_elements};
 use stickslip_debugger::explain::outline::{self, Point, bounds, curve};
 
@@ -40,6 +41,8 @@ pub(crate) struct Look<'a> {
 #[derive(Debug, Clone)]
 pub(crate) struct ShapeLines {
     source: LinesSource,
+    /// The reference configuration, and all lines.
+    reference: Canvas,
     canvas: Canvas,
     window: Window,
 }
@@ -49,6 +52,8 @@ pub(crate) struct ShapeLines {
 struct LinesSource {
     /// Displacements of the shown and of the last state.
     moved: [Weak<Vec<f64>>; 2],
+    /// Those of the first state, which identify the model.
+    start: Weak<Vec<f64>>,
     area: Rect,
     camera: Camera,
     /// The selected node, if zooming keeps it visible.
@@ -58,10 +63,12 @@ struct LinesSource {
 
 impl LinesSource {
     fn new(area: Rect, look: Look, view: &View) -> LinesSource {
-        let frames = [Some(view.frame()), view.frames.last()];
+        let motions = |frame: Option<&Frame>| {
+            frame.map_or_else(Weak::new, |frame| Arc::downgrade(&frame.state.u))
+        };
         LinesSource {
-            moved: frames
-                .map(|frame| frame.map_or_else(Weak::new, |frame| Arc::downgrade(&frame.state.u))),
+            moved: [Some(view.frame()), view.frames.last()].map(motions),
+            start: motions(view.frames.first()),
             area,
             camera: *look.camera,
             towards: (look.camera.zoom != 1.0).then_some(look.selected),
@@ -71,7 +78,12 @@ impl LinesSource {
 
     fn is(&self, other: &LinesSource) -> bool {
         let mut moved = self.moved.iter().zip(&other.moved);
-        moved.all(|(one, other)| one.ptr_eq(other))
+        moved.all(|(one, other)| one.ptr_eq(other)) && self.has_same_reference(other)
+    }
+
+    /// Whether the reference configuration looks alike in the same window.
+    fn has_same_reference(&self, other: &LinesSource) -> bool {
+        self.start.ptr_eq(&other.start)
             && (self.area, self.camera) == (other.area, other.camera)
             && (self.towards, self.styles) == (other.towards, other.styles)
     }
@@ -88,12 +100,19 @@ pub(crate) fn drawn(
     let mut kept = kept.borrow_mut();
     let lines = match kept.take() {
         Some(lines) if lines.source.is(&source) => lines,
-        _ => {
-            let (mut canvas, window) = field(inner, look, view);
+        before => {
+            let (empty, window) = field(inner, look, view);
+            let reference = before
+                .filter(|lines| lines.window == window)
+                .filter(|lines| lines.source.has_same_reference(&source))
+                .map(|lines| lines.reference);
+            let reference = reference.unwrap_or_else(|| undeformed(empty, &window, look, view));
+            let mut canvas = reference.clone();
             bodies(&mut canvas, &window, look, view);
             surfaces(&mut canvas, &window, look, view);
             ShapeLines {
                 source,
+                reference,
                 canvas,
                 window,
             }
@@ -143,22 +162,25 @@ fn draw_curve(canvas: &mut Canvas, window: &Window, nodes: &[Point], style: Styl
     }
 }
 
-fn bodies(canvas: &mut Canvas, window: &Window, look: Look, view: &View) {
-    let elements = || view.model.bodies.iter().flat_map(|body| body.kind.lines());
-    for element in elements() {
-        let reference: Vec<Point> = element
-            .iter()
-            .map(|node| window.projection.at(view.model, *node))
+/// Draws the bodies in the reference configuration.
+fn undeformed(mut canvas: Canvas, window: &Window, look: Look, view: &View) -> Canvas {
+    for element in view.model.bodies.iter().flat_map(|body| body.kind.lines()) {
+        let nodes = element.iter();
+        let nodes: Vec<Point> = nodes
+            .map(|&node| window.projection.at(view.model, node))
             .collect();
-        draw_curve(canvas, window, &reference, look.theme.faint);
+        draw_curve(&mut canvas, window, &nodes, look.theme.faint);
     }
+    canvas
+}
+
+/// Draws the bodies in the current configuration.
+fn bodies(canvas: &mut Canvas, window: &Window, look: Look, view: &View) {
     inside(canvas, window, look, view);
-    for element in elements() {
-        let now: Vec<Point> = element
-            .iter()
-            .map(|node| window.place(view, *node))
-            .collect();
-        draw_curve(canvas, window, &now, look.theme.strong);
+    for element in view.model.bodies.iter().flat_map(|body| body.kind.lines()) {
+        let nodes = element.iter().map(|&node| window.place(view, node));
+        let nodes: Vec<Point> = nodes.collect();
+        draw_curve(canvas, window, &nodes, look.theme.strong);
     }
 }
 

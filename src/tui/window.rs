@@ -6,7 +6,7 @@ use crate::view::View;
 use stickslip_debugger::explain::outline::{Bounds, Point, Projection};
 
 /// The map from the scene to dots: uniform scale, y upwards.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Window {
     pub middle: Point,
     /// Dots per unit length.

@@ -319,9 +319,15 @@ fn supports(
         .turns
         .into_iter()
         .map(|(node, _, left)| if left { (node, "↺") } else { (node, "↻") });
-    for (node, glyph) in supports.chain(turns) {
-        if let Some(at) = canvas.cell(window.dot(window.place(view, node))) {
-            paint::label(buffer, at, glyph, app.theme.good, &app.theme);
+    let marks = supports.chain(turns).filter_map(|(node, glyph)| {
+        let at = canvas.cell(window.dot(window.place(view, node)))?;
+        Some((at, glyph))
+    });
+    let mut last = None;
+    for mark in marks {
+        // Of a fine mesh many nodes are in one cell.
+        if last.replace(mark) != Some(mark) {
+            paint::label(buffer, mark.0, mark.1, app.theme.good, &app.theme);
         }
     }
 }
