@@ -5,7 +5,7 @@
 //! - [`material`]: stress-strain laws; [`deformation`]: det F and stretches of elements, and the range of each law.
 //! - [`beam`]: beams; [`truss`]: bars; [`matrix`]: bodies given by a sparse matrix.
 //! - [`pressure`]: following pressures; [`recovery`]: stresses for output.
-//! - [`element`]: the element interface; [`assembled`]: its place in the system; [`assembly`]: assembles all elements into it.
+//! - [`element`]: the element interface; [`assembly`]: assembles all elements into one system.
 
 mod assembled;
 pub mod assembly;
