@@ -68,23 +68,17 @@ impl Columns {
             pressures: false,
             angle: false,
         };
-        let wide = arrangements
-            .map(|(words, number, ratio)| Columns {
-                words,
-                number,
-                ratio,
-                ..last
-            })
-            .into_iter()
-            .find(|columns| columns.width() <= width);
-        wide.unwrap_or_else(|| {
-            (0..6)
-                .rev()
-                .map(|shown| Columns { shown, ..last })
-                .into_iter()
-                .find(|columns| columns.width() <= width)
-                .unwrap_or(Columns { shown: 0, ..last })
-        })
+        let wide = arrangements.map(|(words, number, ratio)| Columns {
+            words,
+            number,
+            ratio,
+            ..last
+        });
+        let fewer = (0..6).rev().map(|shown| Columns { shown, ..last });
+        wide.into_iter()
+            .chain(fewer)
+            .find(|columns| columns.width() <= width)
+            .unwrap_or(Columns { shown: 0, ..last })
     }
 
     /// Adds pressure and shear if they fit.
@@ -270,7 +264,7 @@ fn row<'a>(
         Span::styled(fitted(view.slave(slave), columns.name), name_style),
         Span::raw(" "),
     ];
-    if view.model.finished.is_some() {
+    if view.is_finished() {
         let words = view.words(slave).unwrap_or_default();
         spans.push(Span::styled(words, theme.mode(view.mode_before(slave))));
         return Line::from(spans);

@@ -6,7 +6,7 @@ use crate::app::App;
 use crate::camera::Camera;
 use crate::canvas::{Canvas, Dot};
 use crate::copied::row;
-use crate::layout::Pane;
+use crate::layout::{Pane, top};
 use crate::paint;
 use crate::pane_entry::{PaneEntry, frame};
 use crate::run_shape;
@@ -492,10 +492,6 @@ fn caption(buffer: &mut Buffer, inner: Rect, shown: Scales, moves: bool, app: &A
     if let Some(first) = line.spans.first_mut() {
         first.content = format!(" {}", first.content.trim_start()).into();
     }
-    let last = Rect {
-        y: inner.bottom() - 1,
-        height: 1,
-        ..inner
-    };
+    let [_, last] = top(inner, inner.height - 1);
     paint::lines(buffer, last, &[line]);
 }
