@@ -6,7 +6,6 @@ use crate::copied::NamedText;
 use crate::layout::Pane;
 use crate::paint;
 use crate::pane_entry::{PaneEntry, frame};
-use crate::theme;
 use crate::view::View;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Margin, Position, Rect};
@@ -14,6 +13,7 @@ use ratatui::style::Style;
 use ratatui::text::{Line, Span};
 use std::ops::Range;
 use stickslip_debugger::Tree;
+use stickslip_debugger::action;
 use stickslip_debugger::history::compare::{self, Sameness, Side};
 use stickslip_debugger::history::verdicts::{BranchEnd, Summary};
 use stickslip_debugger::history::{branches, verdicts};
@@ -243,7 +243,11 @@ fn comparison(
                     .concat(),
                 None => String::new(),
             };
-            let modes = format!("{}→{}", theme::letter(node.mode), theme::letter(node.next));
+            let modes = format!(
+                "{}→{}",
+                action::letter(node.mode),
+                action::letter(node.next)
+            );
             format!("{modes:<MODE$}{numbers}")
         };
         let name = format!(

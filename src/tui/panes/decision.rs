@@ -349,7 +349,7 @@ fn grid(
     let bar = Span::styled("│ ", theme.faint);
     let mut head = vec![Span::styled(format!("{:<LABEL$}", " mode"), theme.heading)];
     for mode in MODES {
-        let text = format!("→ {}", names::mode(mode));
+        let text = format!("→ {}", mode.word());
         head.extend([
             bar.clone(),
             Span::styled(format!("{text:<cell$}"), theme.heading),
@@ -371,8 +371,8 @@ fn grid(
         let parts: &[usize] = if *mode == Mode::Free { &[0] } else { &[0, 1] };
         for &part in parts {
             let label = match (part, here) {
-                (0, true) => format!("▸{}", names::mode(*mode)),
-                (0, false) => format!(" {}", names::mode(*mode)),
+                (0, true) => format!("▸{}", mode.word()),
+                (0, false) => format!(" {}", mode.word()),
                 _ => String::new(),
             };
             let style = if here {
@@ -412,7 +412,7 @@ fn choices(before: Mode, theme: &Theme) -> paint::Lines {
     let cell = |(column, next): (usize, &Mode)| {
         let [first, second] = TABLE_2[row][column];
         let comma = if second.is_empty() { "" } else { ", " };
-        let (before, next) = (names::mode(before), names::mode(*next));
+        let (before, next) = (before.word(), next.word());
         Line::styled(
             format!(" {before} → {next}:  {first}{comma}{second}"),
             theme.text,
@@ -460,16 +460,12 @@ fn fired(decision: &Decision, differs: bool, theme: &Theme) -> Line<'static> {
         _ => format!(" {first}, {second} "),
     };
     let wanted = match (differs, rules(decision)) {
-        (true, Some(rules)) => format!("≠ {rules}: {}", names::mode(decision.wanted)),
+        (true, Some(rules)) => format!("≠ {rules}: {}", decision.wanted.word()),
         _ => String::new(),
     };
     Line::from(vec![
         Span::styled(
-            format!(
-                " {} → {}  ",
-                names::mode(decision.before),
-                names::mode(decision.next)
-            ),
+            format!(" {} → {}  ", decision.before.word(), decision.next.word()),
             theme.heading,
         ),
         Span::styled(cell, theme.lit(decision.next)),
@@ -610,7 +606,7 @@ fn theirs(record: &ContactRecord, slave: usize, view: &View) -> Option<String> {
     if view.attached.is_none() || (said.is_none() && !differs && decision.rule != Rule::Theirs) {
         return None;
     }
-    let next = names::mode(decision.next);
+    let next = decision.next.word();
     let own = match (said, decision.rule) {
         (Some(words), _) => format!("The solver chooses {next}: “{words}”."),
         (None, Rule::Theirs) => format!("The solver chooses {next} and gives no reason."),
@@ -620,7 +616,7 @@ fn theirs(record: &ContactRecord, slave: usize, view: &View) -> Option<String> {
     Some(if differs {
         format!(
             "{own} ≠ {rules} (◁), which gives {} for the same values.",
-            names::mode(decision.wanted)
+            decision.wanted.word()
         )
     } else {
         own
@@ -634,7 +630,7 @@ fn words(record: Option<&ContactRecord>, slave: usize, view: &View) -> String {
     }
     let next = view.mode(slave);
     let Some(record) = record else {
-        return format!("No decision yet; the node starts {}.", names::mode(next));
+        return format!("No decision yet; the node starts {}.", next.word());
     };
     let decision = &record.decision;
     let mut text = match theirs(record, slave, view) {
@@ -659,13 +655,10 @@ fn words(record: Option<&ContactRecord>, slave: usize, view: &View) -> String {
     }
     match view.frame().state.nodes[slave].forced {
         Forced::Once(mode) if next == mode && mode != decision.next => {
-            text += &format!(
-                " Forced to {} for the next minor iteration.",
-                names::mode(mode)
-            );
+            text += &format!(" Forced to {} for the next minor iteration.", mode.word());
         }
         Forced::Held(mode) if record.forced != Forced::Held(mode) => {
-            text += &format!(" Held {} from here on.", names::mode(mode));
+            text += &format!(" Held {} from here on.", mode.word());
         }
         Forced::Held(_) if decision.rule != Rule::Held => text += " Held; Table 2 agrees.",
         _ => {}

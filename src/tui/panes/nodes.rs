@@ -6,7 +6,7 @@ use crate::copied;
 use crate::layout::Pane;
 use crate::paint;
 use crate::pane_entry::{PaneEntry, frame};
-use crate::theme::{self, Theme};
+use crate::theme::Theme;
 use crate::view::View;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
@@ -14,8 +14,7 @@ use ratatui::style::{Modifier, Style};
 use ratatui::text::{Line, Span};
 use stickslip_core::{ContactRecord, Forced, Mode, TestedQuantity};
 use stickslip_debugger::RoundOff;
-use stickslip_debugger::action::{Filter, Sort};
-use stickslip_debugger::explain::names;
+use stickslip_debugger::action::{self, Filter, Sort};
 use stickslip_debugger::explain::tested::Dimension;
 use stickslip_scene::number;
 use stickslip_scene::shown;
@@ -326,9 +325,9 @@ fn modes(
     view: &View,
 ) -> Vec<Span<'static>> {
     let spell = if columns.words {
-        names::mode
+        Mode::word
     } else {
-        theme::letter
+        action::letter
     };
     let style = |mode| {
         if changed {

@@ -11,7 +11,7 @@ use crate::paint;
 use crate::pane_entry::{PaneEntry, frame};
 use crate::run_shape;
 use crate::shape_lines::{self, Look};
-use crate::theme::{self, Theme};
+use crate::theme::Theme;
 use crate::view::View;
 use crate::window::Window;
 use ratatui::buffer::{Buffer, Cell};
@@ -22,6 +22,7 @@ use std::collections::HashMap;
 use std::f64::consts::FRAC_PI_4;
 use stickslip_core::{BodyKind, Model, PointDeformation};
 use stickslip_debugger::Examination;
+use stickslip_debugger::action;
 use stickslip_debugger::explain::conditions::{ConditionArrow, Conditions, Given, conditions};
 use stickslip_debugger::explain::names;
 use stickslip_debugger::explain::outline::{self, Point, outer_nodes};
@@ -397,7 +398,7 @@ fn slaves(buffer: &mut Buffer, canvas: &Canvas, window: &Window, app: &App, view
         } else {
             style
         };
-        paint::label(buffer, (x, y), theme::letter(mode), style, theme);
+        paint::label(buffer, (x, y), action::letter(mode), style, theme);
         let right = (x + 1, y);
         if app.camera.zoom > 1.0
             && seen
