@@ -416,6 +416,7 @@ impl LessonReader<'_> {
 
     fn step(&self, path: Path, step: &StepSpec) -> Result<LessonStep, Fault> {
         let text = |text: &str| self.template(path.then("text"), text, LONGEST_TEXT);
+        let remark = |at: &str, text: &str| self.template(path.then(at), text, LONGEST_REMARK);
         match step {
             StepSpec::Text(text) => {
                 Ok(LessonStep::Text(self.template(path, text, LONGEST_TEXT)?))
@@ -447,7 +448,7 @@ impl LessonReader<'_> {
                     );
                 }
                 let answer = self.answer(path.then("answer"), answer)?;
-                let hint = self.template(path.then("hint"), hint, LONGEST_REMARK)?;
+                let hint = remark("hint", hint)?;
                 let asked = match &answer {
                     Answer::Number(quantity, _) if *ahead == 0 => Some(quantity),
                     _ => None,
@@ -459,7 +460,7 @@ impl LessonReader<'_> {
                     explores: false,
                     ahead: *ahead,
                     hint,
-                    then: self.template(path.then("then"), then, LONGEST_REMARK)?,
+                    then: remark("then", then)?,
                 }))
             }
             StepSpec::Find {
@@ -476,8 +477,8 @@ impl LessonReader<'_> {
                     answer,
                     explores: true,
                     ahead: 0,
-                    hint: self.template(path.then("hint"), hint, LONGEST_REMARK)?,
-                    then: self.template(path.then("then"), then, LONGEST_REMARK)?,
+                    hint: remark("hint", hint)?,
+                    then: remark("then", then)?,
                 }))
             }
             StepSpec::Reach {
@@ -508,8 +509,8 @@ impl LessonReader<'_> {
                     text: text(words)?,
                     goal,
                     without: without.clone(),
-                    hint: self.template(path.then("hint"), hint, LONGEST_REMARK)?,
-                    then: self.template(path.then("then"), then, LONGEST_REMARK)?,
+                    hint: remark("hint", hint)?,
+                    then: remark("then", then)?,
                     solution: solution.collect::<Result<_, Fault>>()?,
                 }))
             }
