@@ -503,12 +503,11 @@ fn differs(then: &StoredState, now: &StoredState, model: &Model) -> Option<Strin
     }
     let other = modes.iter().zip(now).position(|(then, now)| then != now);
     if let Some(k) = other {
-        let word = |mode| names::mode(mode);
         return Some(format!(
             "the next mode of {} is {} instead of {}",
             names::slave(model, k),
-            word(now[k]),
-            word(modes[k])
+            now[k].word(),
+            modes[k].word()
         ));
     }
     (ended != ends || modes.len() != now.len()).then(|| "the outcome differs".to_owned())

@@ -9,7 +9,7 @@ use super::solver::SolverArgs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use stickslip_core::counted;
-use stickslip_debugger::record::differences::{Difference, Differences, TOLERANCE, compare_within};
+use stickslip_debugger::record::differences::{Difference, Differences, compare_within};
 use stickslip_debugger::{Snapshot, SnapshotError};
 use stickslip_platform::files::finish_all;
 
@@ -22,7 +22,7 @@ pub struct Args {
     #[arg(required = true, value_name = "SNAPSHOT")]
     files: Vec<PathBuf>,
     /// Numbers may differ by this part of their scale; all else must be equal
-    #[arg(long, value_name = "PART", default_value_t = TOLERANCE, value_parser = tolerance)]
+    #[arg(long, value_name = "PART", default_value = "1e-9", value_parser = tolerance)]
     tolerance: f64,
     #[command(flatten)]
     solver: SolverArgs,

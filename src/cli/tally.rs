@@ -256,7 +256,7 @@ impl<'a> Tally<'a> {
             table.push(vec![
                 String::new(),
                 names::slave(&self.scene.model, slave).to_owned(),
-                names::mode(found.decision.before).to_owned(),
+                found.decision.before.word().to_owned(),
                 // Off all surfaces there is no gap.
                 match found.gap.is_finite() {
                     true => sig6(found.gap),
@@ -428,7 +428,7 @@ impl<'a> Tally<'a> {
             .enumerate()
             .map(|(slave, found)| SlaveRecord {
                 node: names::slave(&self.scene.model, slave).to_owned(),
-                mode: names::mode(found.decision.before),
+                mode: found.decision.before.word(),
                 gap: found.gap,
                 f_n: found.f_n,
                 f_t: found.f_t,

@@ -11,19 +11,6 @@ pub struct Search {
     missed: bool,
 }
 
-/// Where to move after a key of the search.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum SearchMove {
-    /// Stays: the text is still being typed, or the search was cancelled.
-    Nowhere,
-    /// To the first match from the current line on.
-    Here,
-    /// To the next match.
-    Next,
-    /// To the previous match.
-    Back,
-}
-
 impl Search {
     /// The text that is being typed.
     pub fn typed(&self) -> Option<&str> {
@@ -45,31 +32,30 @@ impl Search {
         }
     }
 
-    /// Handles a key; `None` if the search does not use it.
-    pub fn key(&mut self, name: &str) -> Option<SearchMove> {
+    /// Handles a key on a page that shows line `from` first, and returns the matching line to go to, if any; the outer `None` if the
+    /// search does not use the key.
+    pub fn key(&mut self, name: &str, from: usize, lines: &[String]) -> Option<Option<usize>> {
         self.missed = false;
         let Some(typed) = &mut self.typed else {
-            return match name {
-                "/" => {
-                    self.typed = Some(String::new());
-                    Some(SearchMove::Nowhere)
-                }
-                "n" if !self.sought.is_empty() => Some(SearchMove::Next),
-                "N" if !self.sought.is_empty() => Some(SearchMove::Back),
-                _ => None,
-            };
+            match name {
+                "/" => self.typed = Some(String::new()),
+                "n" if !self.sought.is_empty() => return Some(self.find(from, 1, lines)),
+                "N" if !self.sought.is_empty() => return Some(self.find(from, -1, lines)),
+                _ => return None,
+            }
+            return Some(None);
         };
         match name {
             "Esc" => self.typed = None,
             // Enter alone repeats the last search.
             "Enter" if typed.is_empty() => {
                 self.typed = None;
-                return Some(SearchMove::Next);
+                return Some(self.find(from, 1, lines));
             }
             "Enter" => {
                 self.sought = typed.to_lowercase();
                 self.typed = None;
-                return Some(SearchMove::Here);
+                return Some(self.find(from, 0, lines));
             }
             "Backspace" if typed.is_empty() => self.typed = None,
             "Backspace" => {
@@ -79,7 +65,7 @@ impl Search {
             _ if name.chars().count() == 1 => typed.push_str(name),
             _ => {}
         }
-        Some(SearchMove::Nowhere)
+        Some(None)
     }
 
     /// Whether a line contains the search text.
@@ -87,18 +73,16 @@ impl Search {
         !self.sought.is_empty() && line.to_lowercase().contains(&self.sought)
     }
 
-    /// The matching line to go to from line `from`, wrapping around at the end of the page.
-    pub fn find(&mut self, go: SearchMove, from: usize, lines: &[String]) -> Option<usize> {
-        let count = lines.len();
-        if count == 0 || go == SearchMove::Nowhere || self.sought.is_empty() {
+    /// The first matching line `by` lines after line `from` or further on, or back from there if `by` is negative; around the end of the
+    /// page.
+    fn find(&mut self, from: usize, by: isize, lines: &[String]) -> Option<usize> {
+        let count = lines.len() as isize;
+        if count == 0 || self.sought.is_empty() {
             return None;
         }
+        let direction = if by < 0 { -1 } else { 1 };
         let found = (0..count)
-            .map(|k| match go {
-                SearchMove::Back => (from + 2 * count - 1 - k) % count,
-                SearchMove::Next => (from + 1 + k) % count,
-                _ => (from + k) % count,
-            })
+            .map(|k| (from as isize + by + direction * k).rem_euclid(count) as usize)
             .find(|&line| self.holds(&lines[line]));
         self.missed = found.is_none();
         found
@@ -115,10 +99,7 @@ mod tests {
         let mut search = Search::default();
         let mut at = 0;
         let mut press = |name: &str, at: &mut usize| {
-            let go = search.key(name)?;
-            if let Some(line) = search.find(go, *at, &lines) {
-                *at = line;
-            }
+            *at = search.key(name, *at, &lines)?.unwrap_or(*at);
             search.title()
         };
         for letter in ["/", "b", "e", "x", "Backspace"] {

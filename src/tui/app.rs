@@ -544,9 +544,7 @@ impl App {
                 }
             }
             Ui::View
-                if view.is_some_and(|view| {
-                    view.model.space.is_none() && view.model.finished.is_none()
-                }) =>
+                if view.is_some_and(|view| view.model.space.is_none() && !view.is_finished()) =>
             {
                 self.complain("this scene is plane: it has one view");
             }
@@ -570,7 +568,7 @@ impl App {
             Ui::Ask(question) => self.ask(question, view),
             Ui::CommandLine => self.overlay = Overlay::line(Purpose::Command, ""),
             Ui::Log => {
-                let finished = view.is_some_and(|view| view.model.finished.is_some());
+                let finished = view.is_some_and(View::is_finished);
                 self.overlay = Overlay::solver(if finished {
                     solver::Page::Run
                 } else {

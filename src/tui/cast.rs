@@ -34,8 +34,8 @@ pub fn film(record: &Record, session: Session, size: (u16, u16)) -> Result<Strin
     let model = record.scene()?.model;
     let mut film = Film::new(&record.header.name, size);
     let see = &mut |session: &Session, entry: Option<&Entry>| film.show(session, &model, entry);
-    let session = record.replay_in(session, see)?;
-    film.end(&session);
+    record.replay_in(session, see)?;
+    film.end();
     Ok(film.text)
 }
 
@@ -88,7 +88,7 @@ impl Film {
     }
 
     /// Holds the last screen and shows the cursor again.
-    fn end(&mut self, _: &Session) {
+    fn end(&mut self) {
         let below = format!("\u{1b}[0m\u{1b}[{};1H\u{1b}[?25h", SIZE.1);
         self.output(&below);
     }

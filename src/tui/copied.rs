@@ -2,7 +2,6 @@
 
 use crate::app::App;
 use crate::view::View;
-use stickslip_debugger::explain::names;
 use stickslip_debugger::{Watch, WatchQuantity};
 
 /// A name for the message, and the copied text.
@@ -17,10 +16,10 @@ pub fn row(app: &App, view: &View) -> Result<NamedText, String> {
     let next = if app.learning.hides(view, slave) {
         "?"
     } else {
-        names::mode(view.mode(slave))
+        view.mode(slave).word()
     };
     let name = view.slave(slave);
-    let before = names::mode(view.mode_before(slave));
+    let before = view.mode_before(slave).word();
     let mut cells = vec![name.to_owned(), before.into(), next.into()];
     if let Some(found) = view.record(slave) {
         let numbers = [found.gap, found.f_n, found.f_t, found.t_max, found.slip];

@@ -258,14 +258,13 @@ impl Debugger {
         };
         (self.loading, self.app.loading) = (None, None);
         match loaded {
-            LoadedFile::Scene(Ok(session)) => self.open(*session),
-            LoadedFile::Lesson(Ok(taught)) => self.take_lesson(taught.0, taught.1),
-            LoadedFile::Chart(Ok(page)) => {
+            Ok(LoadedFile::Scene(session)) => self.open(*session),
+            Ok(LoadedFile::Lesson(taught)) => self.take_lesson(taught.0, taught.1),
+            Ok(LoadedFile::Chart(page)) => {
                 self.app.say("");
                 self.app.overlay = Overlay::Chart(page);
             }
-            LoadedFile::Scene(Err(why)) | LoadedFile::Lesson(Err(why)) => self.app.complain(why),
-            LoadedFile::Chart(Err(why)) => self.app.complain(why),
+            Err(why) => self.app.complain(why),
         }
         true
     }
@@ -449,13 +448,6 @@ impl Debugger {
             .say("measuring in the background; the chart opens when it is ready (Ctrl-C stops it)");
     }
 
-    fn show_chart(&mut self, page: Result<ChartPage, Refusal>) {
-        match page {
-            Ok(page) => self.app.overlay = Overlay::Chart(Box::new(page)),
-            Err(error) => self.app.complain(error),
-        }
-    }
-
     /// Follows a chart that is being measured, and shows it once no overlay is open. Returns whether there is anything new to draw.
     fn follow_chart(&mut self) -> bool {
         let Some(measuring) = &self.measuring else {
@@ -471,8 +463,11 @@ impl Debugger {
         };
         (self.measuring, self.app.measuring) = (None, None);
         self.app.say("");
-        let page = result.map_err(Refusal::new);
-        self.show_chart(page.and_then(ChartPage::from_chart));
+        let result = result.map_err(Refusal::new);
+        match result.and_then(ChartPage::from_chart) {
+            Ok(page) => self.app.overlay = Overlay::Chart(Box::new(page)),
+            Err(error) => self.app.complain(error),
+        }
         true
     }
 

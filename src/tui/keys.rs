@@ -10,38 +10,16 @@ pub fn name(key: &KeyEvent) -> Option<String> {
     }
     let Modifiers { control, shift, .. } = key.modifiers;
     let name = match key.code {
-        Char(' ') => "Space".into(),
-        Char(letter) if control => format!("Ctrl-{}", letter.to_lowercase()),
-        Char(letter) => letter.into(),
+        Char(letter) if control && letter != ' ' => format!("Ctrl-{}", letter.to_lowercase()),
+        Char(letter) if letter != ' ' => letter.into(),
         F(number) if shift => format!("Shift-F{number}"),
         // Many terminals send Shift-F11 as F23, which is F11 plus 12.
         F(number @ 13..=24) => format!("Shift-F{}", number - 12),
         F(number) => format!("F{number}"),
         Tab if shift => "Shift-Tab".into(),
-        BackTab => "Shift-Tab".into(),
-        other => plain(other)?.into(),
+        other => NAMED.iter().find(|(code, _)| *code == other)?.1.into(),
     };
     Some(name)
-}
-
-/// Names of the keys that type no letter.
-fn plain(code: KeyCode) -> Option<&'static str> {
-    Some(match code {
-        Enter => "Enter",
-        Tab => "Tab",
-        Esc => "Esc",
-        Up => "Up",
-        Down => "Down",
-        Left => "Left",
-        Right => "Right",
-        Home => "Home",
-        End => "End",
-        PageUp => "PageUp",
-        PageDown => "PageDown",
-        Backspace => "Backspace",
-        Delete => "Delete",
-        BackTab | Char(_) | F(_) => return None,
-    })
 }
 
 /// Splits one report into key presses: Esc followed by a letter arrives as Alt and the letter, which no action uses.
@@ -69,10 +47,7 @@ pub fn press(name: &str) -> Option<KeyEvent> {
     let code = match (letters.next()?, letters.as_str()) {
         (letter, "") => Char(letter),
         ('F', number) if number.parse::<u8>().is_ok() => F(number.parse().ok()?),
-        _ => NAMED
-            .iter()
-            .copied()
-            .find(|code| spelled(*code) == Some(rest))?,
+        _ => NAMED.iter().find(|(_, name)| *name == rest)?.0,
     };
     Some(KeyEvent::new(code, modifiers))
 }
@@ -107,31 +82,24 @@ pub fn presses(names: &str) -> Result<Vec<KeyEvent>, String> {
     Ok(pressed)
 }
 
-const NAMED: [KeyCode; 15] = [
-    Char(' '),
-    BackTab,
-    Enter,
-    Tab,
-    Esc,
-    Up,
-    Down,
-    Left,
-    Right,
-    Home,
-    End,
-    PageUp,
-    PageDown,
-    Backspace,
-    Delete,
+/// Names of the keys that type no visible letter.
+const NAMED: [(KeyCode, &str); 15] = [
+    (Char(' '), "Space"),
+    (BackTab, "Shift-Tab"),
+    (Enter, "Enter"),
+    (Tab, "Tab"),
+    (Esc, "Esc"),
+    (Up, "Up"),
+    (Down, "Down"),
+    (Left, "Left"),
+    (Right, "Right"),
+    (Home, "Home"),
+    (End, "End"),
+    (PageUp, "PageUp"),
+    (PageDown, "PageDown"),
+    (Backspace, "Backspace"),
+    (Delete, "Delete"),
 ];
-
-fn spelled(code: KeyCode) -> Option<&'static str> {
-    match code {
-        Char(' ') => Some("Space"),
-        BackTab => Some("Shift-Tab"),
-        other => plain(other),
-    }
-}
 
 #[cfg(test)]
 mod tests {

@@ -228,7 +228,7 @@ fn table(choice: &Choice, most: u16) -> u16 {
 }
 
 /// The upper rows of an area, and the others.
-fn top(area: Rect, rows: u16) -> [Rect; 2] {
+pub(crate) fn top(area: Rect, rows: u16) -> [Rect; 2] {
     Layout::vertical([Constraint::Length(rows), Constraint::Min(0)]).areas(area)
 }
 
@@ -290,7 +290,6 @@ fn with_lesson(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
             let [nodes, page] = top(upper, nodes);
             vec![(Nodes, nodes), (choice.panes.page, page)]
         }
-        _ if choice.panes.focus == Nodes => vec![(Nodes, upper)],
         _ => vec![(choice.panes.focus, upper)],
     };
     panes.push((Lesson, lower));

@@ -75,20 +75,18 @@ impl Learning {
         word: &str,
         selected: usize,
         view: &View,
-    ) -> Result<String, String> {
+    ) -> Result<String, Refusal> {
         let (cursor, frame) = (view.cursor, view.frame());
         match (&mut self.lesson, &mut self.guess) {
             (_, Some(guess)) => guess
                 .predict(view.model, cursor, frame, selected, word)
-                .map(|(_, text)| text)
-                .map_err(|why| why.to_string()),
+                .map(|(_, text)| text),
             (Some(tutor), None) => tutor
                 .answer(word, selected, cursor, frame)
-                .map(|()| String::new())
-                .map_err(|why| why.to_string()),
-            (None, None) => {
-                Err("there is no question; press p to hide decisions until you predict them".into())
-            }
+                .map(|()| String::new()),
+            (None, None) => Err(Refusal::new(
+                "there is no question; press p to hide decisions until you predict them",
+            )),
         }
     }
 
@@ -98,7 +96,7 @@ impl Learning {
         whose: Option<HiddenDecisions>,
         view: &View,
     ) -> Result<String, String> {
-        if view.model.finished.is_some() {
+        if view.is_finished() {
             return Err(format!("{READ_ONLY}: {NO_MODES}"));
         }
         if self

@@ -38,7 +38,7 @@ impl App {
             Page::Contact => self.panes.zoom(Contact),
             Page::Diagnosis => return self.ask_page(Diagnosis, view),
             // The cures of a finished run are in its diagnosis.
-            Page::Remedies if view.is_some_and(|view| view.model.finished.is_some()) => {
+            Page::Remedies if view.is_some_and(View::is_finished) => {
                 return self.ask_page(Diagnosis, view);
             }
             Page::Remedies => return self.ask_page(Remedies, view),
@@ -118,7 +118,7 @@ impl App {
                     line.typed
                 ));
             }
-            _ if view.is_some_and(|view| view.model.finished.is_some()) => {
+            _ if view.is_some_and(View::is_finished) => {
                 return self.copy(None, view);
             }
             _ if line.typed.is_empty() => {

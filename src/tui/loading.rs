@@ -3,7 +3,6 @@
 use crate::chartpage::ChartPage;
 use std::path::Path;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
-use stickslip_debugger::Refusal;
 use stickslip_debugger::record::journal::{Journal, JournalError, Record};
 use stickslip_debugger::teach::progress::ProgressStore;
 use stickslip_debugger::teach::{lesson, play};
@@ -11,19 +10,19 @@ use stickslip_debugger::{Lesson, Session, Tutor};
 use stickslip_platform::task;
 use stickslip_scene::FileKind;
 
-/// A loaded file, or why it cannot be loaded.
+/// A loaded file.
 pub enum LoadedFile {
     /// A session on a scene.
-    Scene(Result<Box<Session>, String>),
+    Scene(Box<Session>),
     /// A lesson and the session on its scene.
-    Lesson(Result<Box<(Tutor, Session)>, String>),
+    Lesson(Box<(Tutor, Session)>),
     /// A chart, loaded or measured.
-    Chart(Result<Box<ChartPage>, Refusal>),
+    Chart(Box<ChartPage>),
 }
 
 /// A file that is being loaded; dropping this cancels it.
 pub struct Loading {
-    result: Receiver<LoadedFile>,
+    result: Receiver<Result<LoadedFile, String>>,
 }
 
 impl Loading {
@@ -36,7 +35,7 @@ impl Loading {
                 Some(FileKind::Journal) => resumed(path).map_err(|why| why.to_string()),
                 _ => Session::open(&name),
             };
-            LoadedFile::Scene(session.map(Box::new))
+            Ok(LoadedFile::Scene(Box::new(session?)))
         })
     }
 
@@ -45,24 +44,26 @@ impl Loading {
         let name = name.to_owned();
         Loading::start(move || {
             let (name, step) = lesson::split_step(&name);
-            let lesson = Lesson::open(name).map_err(|why| why.to_string());
-            LoadedFile::Lesson(lesson.map(|lesson| {
-                if let Some(runs) = &lesson.runs {
-                    // Measured in the background, so that keys need not wait for it; an error is shown where the result is used.
-                    let _ = runs.measure();
-                }
-                Box::new(play::begin(lesson, step, &progress))
-            }))
+            let lesson = Lesson::open(name).map_err(|why| why.to_string())?;
+            if let Some(runs) = &lesson.runs {
+                // Measured in the background, so that keys need not wait for it; an error is shown where the result is used.
+                let _ = runs.measure();
+            }
+            let begun = play::begin(lesson, step, &progress);
+            Ok(LoadedFile::Lesson(Box::new(begun)))
         })
     }
 
     /// Loads the table of a chart.
     pub fn chart(file: &str) -> Loading {
         let file = file.to_owned();
-        Loading::start(move || LoadedFile::Chart(ChartPage::open(&file).map(Box::new)))
+        Loading::start(move || {
+            let page = ChartPage::open(&file).map_err(|why| why.to_string())?;
+            Ok(LoadedFile::Chart(Box::new(page)))
+        })
     }
 
-    fn start(read: impl FnOnce() -> LoadedFile + Send + 'static) -> Loading {
+    fn start(read: impl FnOnce() -> Result<LoadedFile, String> + Send + 'static) -> Loading {
         let (sender, result) = channel();
         task::spawn(move || {
             // The receiver may be gone.
@@ -72,13 +73,13 @@ impl Loading {
     }
 
     /// The result, once it is available.
-    pub fn result(&self) -> Option<LoadedFile> {
+    pub fn result(&self) -> Option<Result<LoadedFile, String>> {
         match self.result.try_recv() {
             Ok(loaded) => Some(loaded),
             Err(TryRecvError::Empty) => None,
-            Err(TryRecvError::Disconnected) => Some(LoadedFile::Scene(Err(
-                "internal error while loading the file".into(),
-            ))),
+            Err(TryRecvError::Disconnected) => {
+                Some(Err("internal error while loading the file".into()))
+            }
         }
     }
 }

@@ -93,12 +93,8 @@ impl App {
         let view = view?;
         let (pane, _) = pane_at(self, at, view)?;
         let step = match (pane, up) {
-            (Shape, true) => {
-                self.camera = self.camera.zoomed(1.25);
-                return None;
-            }
-            (Shape, false) => {
-                self.camera = self.camera.zoomed(0.8);
+            (Shape, _) => {
+                self.camera = self.camera.zoomed(if up { 1.25 } else { 0.8 });
                 return None;
             }
             (Diagnosis, _) => {

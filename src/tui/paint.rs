@@ -65,6 +65,13 @@ pub fn cut(text: &str, width: usize) -> String {
     }
 }
 
+/// A text cut to a column of this width, and the blanks that fill the column.
+pub fn cell(text: &str, width: usize, style: Style) -> [Span<'static>; 2] {
+    let text = cut(text, width);
+    let blank = " ".repeat(width.saturating_sub(text.width()));
+    [Span::styled(text, style), Span::raw(blank)]
+}
+
 /// Lines of text with styles.
 pub type Lines = Vec<Line<'static>>;
 

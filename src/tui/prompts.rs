@@ -7,7 +7,6 @@ use crate::event::KeyEvent;
 use crate::input_queue::QueuedInput;
 use crate::screen;
 use crate::scroll::scrolled;
-use crate::theme;
 use crate::view::{View, context};
 use ratatui::layout::Margin;
 use stickslip_core::Mode;
@@ -59,7 +58,7 @@ impl App {
         self.close(view);
         let wanted = [Mode::Free, Mode::Sliding, Mode::Fixed]
             .into_iter()
-            .find(|mode| theme::letter(*mode).eq_ignore_ascii_case(name));
+            .find(|mode| action::letter(*mode).eq_ignore_ascii_case(name));
         match wanted {
             Some(mode) => {
                 let hold = name.chars().all(char::is_uppercase);

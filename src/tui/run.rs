@@ -46,14 +46,12 @@ pub fn run(
     overrides: &[(String, String)],
     journal: &JournalTarget,
 ) -> Result<(), Error> {
-    let session = match scene {
-        Some(scene) => {
-            let mut session = load(&scene, overrides)?;
-            journal.begin(&mut session)?;
-            Some(session)
-        }
-        None => None,
+    let begin = |scene: String| {
+        let mut session = Session::new(Scene::open_any(&scene, overrides)?);
+        journal.begin(&mut session)?;
+        Ok::<_, Error>(session)
     };
+    let session = scene.map(begin).transpose()?;
     go(session, *journal != JournalTarget::Nowhere, None)
 }
 
@@ -218,7 +216,9 @@ fn events(debugger: &mut Debugger, terminal: &mut Terminal, signals: &Signals) -
             };
         }
         if signals.stop() {
-            stop(terminal, signals)?;
+            // From another process.
+            terminal.stop()?;
+            continued(signals);
             changed = true;
         }
         if signals.resumed() {
@@ -270,22 +270,9 @@ fn obey(
     Ok(false)
 }
 
-/// Stops the process after a SIGTSTP from another process.
-fn stop(terminal: &mut Terminal, signals: &Signals) -> io::Result<()> {
-    terminal.stop()?;
-    continued(signals);
-    Ok(())
-}
-
 /// Whether the process was stopped and continued since the last call.
 fn continued(signals: &Signals) -> bool {
     // A SIGTSTP sent to the process group arrives here, too.
     signals.stop();
     signals.resumed()
-}
-
-/// Loads a scene.
-fn load(scene: &str, overrides: &[(String, String)]) -> Result<Session, SceneError> {
-    let scene = Scene::open_any(scene, overrides)?;
-    Ok(Session::new(scene))
 }

@@ -2,6 +2,7 @@
 
 use crate::app::App;
 use crate::canvas::Canvas;
+use crate::layout::top;
 use crate::paint;
 use crate::view::View;
 use crate::window::Window;
@@ -32,10 +33,8 @@ pub fn draw(buffer: &mut Buffer, inner: Rect, run: &FinishedRun, app: &App, view
     points().for_each(|point| bounds.add(flat(*point)));
     let place = |slave: usize| shape.slaves.get(slave).copied().flatten().map(flat);
     let selected = app.slave(view);
-    let mut canvas = Canvas::new(Rect {
-        height: inner.height - 1,
-        ..inner
-    });
+    let [field, last] = top(inner, inner.height - 1);
+    let mut canvas = Canvas::new(field);
     let window = Window::new(&canvas, &bounds, &app.camera, place(selected));
     for (faces, style) in shape.faces.iter().zip([app.theme.faint, app.theme.strong]) {
         for face in faces {
@@ -71,11 +70,6 @@ pub fn draw(buffer: &mut Buffer, inner: Rect, run: &FinishedRun, app: &App, view
     } else {
         format!(" {} view (V)  ", app.camera.projection.word())
     };
-    let line = Rect {
-        y: inner.bottom() - 1,
-        height: 1,
-        ..inner
-    };
     let text = format!("{side} faint: master   C closed  · open   undeformed");
-    paint::lines(buffer, line, &[text.into()]);
+    paint::lines(buffer, last, &[text.into()]);
 }

@@ -170,12 +170,3 @@ impl Theme {
 pub fn wants_no_colour() -> bool {
     std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty())
 }
-
-/// A mode as a letter, as the key `m` expects it.
-pub fn letter(mode: Mode) -> &'static str {
-    match mode {
-        Mode::Free => "f",
-        Mode::Sliding => "s",
-        Mode::Fixed => "x",
-    }
-}

@@ -141,6 +141,11 @@ impl<'a> View<'a> {
         self.background?.worst_point(&self.frame().state.u)
     }
 
+    /// Whether this is a finished run of another program.
+    pub fn is_finished(&self) -> bool {
+        self.model.finished.is_some()
+    }
+
     /// The shown frame.
     pub fn frame(&self) -> &'a Frame {
         &self.frames[self.cursor]
@@ -152,7 +157,7 @@ impl<'a> View<'a> {
         let (event, next) = (self.frame().event.as_deref()?, self.frame().state.next);
         let again =
             event.position.increment == next.increment && event.position.attempt != next.attempt;
-        (!again || self.model.finished.is_some()).then_some(event)
+        (!again || self.is_finished()).then_some(event)
     }
 
     /// The user's intervention that produced the shown frame, if any.

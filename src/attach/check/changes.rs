@@ -6,7 +6,7 @@ use serde_json::Value;
 use stickslip_core::plane::max_abs;
 use stickslip_core::{Mode, counted};
 use stickslip_debugger::Fault;
-use stickslip_debugger::explain::names::{self, MODES};
+use stickslip_debugger::explain::names::MODES;
 use stickslip_debugger::recorded::orders::{FRICTION, INCREMENT};
 use stickslip_exchange::attach::message::{EndedLevel, Id, ParameterKind, ParameterMessage, State};
 use stickslip_scene::shown;
@@ -43,14 +43,14 @@ pub fn force(mut trial: Trial, _: &[State]) -> Result<Outcome, Fault> {
         for mode in MODES {
             if let Err(reason) = trial.force(contact, mode, false)? {
                 // A frictionless contact cannot stick, and one past the end of its surface cannot touch.
-                refused.push(format!("{} {}: {reason}", name(contact), names::mode(mode)));
+                refused.push(format!("{} {}: {reason}", name(contact), mode.word()));
                 continue;
             }
             let state = trial.step()?;
             let found = state.as_ref().and_then(|state| at(state, contact));
             if let Some(found) = found {
                 if found.mode != mode {
-                    let (is, wanted) = (names::mode(found.mode), names::mode(mode));
+                    let (is, wanted) = (found.mode.word(), mode.word());
                     let contact = name(contact);
                     return Ok(fails(
                         format!(
@@ -91,7 +91,7 @@ pub fn force(mut trial: Trial, _: &[State]) -> Result<Outcome, Fault> {
             let found = format!(
                 "with all contacts forced at once, {} is not {}",
                 name(contact),
-                names::mode(*mode)
+                mode.word()
             );
             return Ok(fails(found, MEND));
         }
@@ -147,11 +147,11 @@ pub fn hold(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> {
                 Some(EndedLevel::Cut) => ", after the increment was cut",
                 _ => "",
             };
-            let is = at(state, &contact).map_or("", |found| names::mode(found.mode));
+            let is = at(state, &contact).map_or("", |found| found.mode.word());
             let found = format!(
                 "contact {} is held {}, but solved {is} in iteration {number}{then}",
                 name(&contact),
-                names::mode(mode)
+                mode.word()
             );
             return Ok(fails(
                 found,

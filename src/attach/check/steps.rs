@@ -8,7 +8,6 @@ use stickslip_core::step::judged::ALLOWED;
 use stickslip_core::step::state::State as OurState;
 use stickslip_core::{Mode, Model, Position, counted};
 use stickslip_debugger::Fault;
-use stickslip_debugger::explain::names;
 use stickslip_debugger::recorded::decode::WireFrame;
 use stickslip_scene::shown;
 
@@ -282,8 +281,8 @@ fn unfollowed(before: &State, state: &State) -> Option<(String, &'static str)> {
             format!(
                 "contact {} is solved {}, but its previous `next` was {}",
                 shown::line(&now.label()),
-                names::mode(now.mode),
-                names::mode(then.next)
+                now.mode.word(),
+                then.next.word()
             ),
             "`mode` is the mode of this solve, `next` the mode of the next one",
         )
@@ -483,7 +482,7 @@ fn otherwise(then: &State, now: &State) -> Option<String> {
     Some(format!(
         "contact {} is {}, next {}",
         shown::line(&id),
-        names::mode(other.mode),
-        names::mode(other.next)
+        other.mode.word(),
+        other.next.word()
     ))
 }

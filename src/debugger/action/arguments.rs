@@ -123,17 +123,14 @@ impl ActionEntry {
             Verb::Node => return ui(Ui::Select(find(rest, context)?)),
             Verb::Open if rest.is_empty() => return ask(Question::Scene),
             Verb::Open => return ui(Ui::Open(rest.into())),
-            Verb::Sort => {
-                let sort = one_of(&words, Sort::ALL, Sort::word)?;
-                return ui(Ui::Sort(sort));
-            }
-            Verb::Filter => {
-                let filter = one_of(&words, Filter::ALL, Filter::word)?;
-                return ui(Ui::Filter(filter));
-            }
+            Verb::Sort => return ui(Ui::Sort(one_of(&words, Sort::ALL, Sort::word)?)),
+            Verb::Filter => return ui(Ui::Filter(one_of(&words, Filter::ALL, Filter::word)?)),
             Verb::Copy => {
-                let what = one_of(&words, CopyTarget::all(), CopyTarget::word)?;
-                return ui(Ui::Copy(what));
+                return ui(Ui::Copy(one_of(
+                    &words,
+                    CopyTarget::all(),
+                    CopyTarget::word,
+                )?));
             }
             Verb::Colours => {
                 let rest = words.join(" ");
@@ -353,15 +350,18 @@ fn node_and_mode(
 /// A mode by its letter (f, s, x) or a prefix of its name.
 pub fn mode(word: &str) -> Option<Mode> {
     let word = word.to_lowercase();
-    match word.as_str() {
-        "f" => Some(Mode::Free),
-        "s" => Some(Mode::Sliding),
-        "x" => Some(Mode::Fixed),
-        _ if word.len() < 2 => None,
-        _ if "free".starts_with(&word) => Some(Mode::Free),
-        _ if "sliding".starts_with(&word) => Some(Mode::Sliding),
-        _ if "fixed".starts_with(&word) => Some(Mode::Fixed),
-        _ => None,
+    Mode::ALL.into_iter().find(|mode| match word.len() {
+        0 | 1 => letter(*mode) == word,
+        _ => mode.word().starts_with(&word),
+    })
+}
+
+/// A mode as a letter.
+pub fn letter(mode: Mode) -> &'static str {
+    match mode {
+        Mode::Free => "f",
+        Mode::Sliding => "s",
+        Mode::Fixed => "x",
     }
 }
 

@@ -8,7 +8,7 @@
 //! }
 //! ```
 
-use super::table::{ACTIONS, ActionEntry, Group, by_key};
+use super::table::{ACTIONS, ActionEntry, Group, by_key, named};
 use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
 use std::collections::BTreeMap;
 use std::fmt;
@@ -96,13 +96,10 @@ impl Keymap {
                 .unwrap_or(of_keys);
             let misnamed = |message| wrong(of_name, &Path::default(), message);
             let names = || ACTIONS.iter().map(|entry| entry.name);
-            let entry = ACTIONS
-                .iter()
-                .find(|entry| entry.name == name)
-                .ok_or_else(|| {
-                    let near = did_you_mean(name, names());
-                    misnamed(format!("unknown action {}{near}", quoted(name)))
-                })?;
+            let entry = named(name).ok_or_else(|| {
+                let near = did_you_mean(name, names());
+                misnamed(format!("unknown action {}{near}", quoted(name)))
+            })?;
             if FIXED.contains(&entry.name) {
                 let key = entry.keys.join(", ");
                 return Err(misnamed(format!("{name} is always {key}")));
@@ -142,11 +139,9 @@ impl Keymap {
                 }
             }
         }
-        let same = |name: &str, keys: &[String]| {
-            let entry = ACTIONS.iter().find(|entry| entry.name == name);
-            entry.is_some_and(|entry| entry.keys == keys)
-        };
-        keymap.changed.retain(|name, keys| !same(name, keys));
+        keymap
+            .changed
+            .retain(|name, keys| named(name).is_none_or(|entry| entry.keys != keys));
         Ok(keymap)
     }
 
@@ -169,7 +164,7 @@ impl Keymap {
                 .changed
                 .iter()
                 .find(|(_, keys)| keys.iter().any(|own| own == key))?;
-            ACTIONS.iter().find(|entry| entry.name == *name)
+            named(name)
         })
     }
 

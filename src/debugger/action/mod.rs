@@ -25,7 +25,7 @@ pub mod table;
 #[cfg(test)]
 mod tests;
 
-pub use arguments::{increment, mode, parse};
+pub use arguments::{increment, letter, mode, parse};
 pub use complete::{complete, takes_path};
 pub use context::{Context, exact};
 pub use keymap::Keymap;
@@ -33,4 +33,4 @@ pub use meaning::{
     Action, ChartOf, Colours, CopyTarget, Filter, HiddenDecisions, Page, Question, Sort, Step, Ui,
 };
 pub use parameters::{parameter, present};
-pub use table::{ACTIONS, ActionEntry, Group, by_key, by_name, markdown};
+pub use table::{ACTIONS, ActionEntry, Group, by_key, by_name, markdown, named};

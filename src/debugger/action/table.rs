@@ -227,6 +227,11 @@ pub const ACTIONS: &[ActionEntry] = &[
     entry(Program, "quit", "", &["q"], "quit", "Leave", Do(Ui::Quit)),
 ];
 
+/// The entry of this name.
+pub fn named(name: &str) -> Option<&'static ActionEntry> {
+    ACTIONS.iter().find(|entry| entry.name == name)
+}
+
 /// The entry of a key.
 pub fn by_key(key: &str) -> Option<&'static ActionEntry> {
     ACTIONS.iter().find(|entry| entry.keys.contains(&key))
@@ -242,15 +247,11 @@ pub fn by_name(word: &str) -> Result<&'static ActionEntry, Refusal> {
             "unknown action (name too long); ? lists all actions"
         ));
     }
-    if let Some(entry) = ACTIONS.iter().find(|entry| entry.name == word) {
-        return Ok(entry);
+    let of_key = || by_key(word).filter(|_| word.chars().count() == 1);
+    match named(word).or_else(of_key) {
+        Some(entry) => Ok(entry),
+        None => begun(word),
     }
-    if word.chars().count() == 1
-        && let Some(entry) = by_key(word)
-    {
-        return Ok(entry);
-    }
-    begun(word)
 }
 
 /// The only entry whose name begins with a word.

@@ -82,7 +82,7 @@ fn words(model: &Model, slave: usize, contact: &ConeContact) -> String {
     let [f_n, f_1, f_2] = contact.force;
     let (normal, shear) = (sig4(f_n), sig4(f_1.hypot(f_2)));
     let name = names::slave(model, slave);
-    let mode = names::mode(contact.mode);
+    let mode = contact.mode.word();
     match contact.mode {
         Mode::Free => format!("{name} {mode}, gap {}", sig4(contact.motion[0])),
         Mode::Fixed => format!("{name} {mode}, F_n {normal}, |F_t| {shear}"),

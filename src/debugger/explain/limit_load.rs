@@ -159,7 +159,7 @@ fn words((load, how): &(f64, PathEnd), model: &Model) -> String {
         ),
         PathEnd::Ends(changes) => {
             let change = |change: &Change| {
-                let [from, to] = [change.from, change.to].map(names::mode);
+                let [from, to] = [change.from, change.to].map(Mode::word);
                 format!("{} {from} → {to}", names::slave(model, change.contact))
             };
             format!(

@@ -164,7 +164,7 @@ impl Remedy {
             .collect();
         (!first.is_empty()).then(|| Remedy {
             kind: RemedyKind::Start(mode),
-            label: format!("start contacts {}", names::mode(mode)),
+            label: format!("start contacts {}", mode.word()),
             how: RemedyInput::Listed,
             first,
         })
@@ -270,7 +270,7 @@ impl Remedy {
             }
             RemedyKind::Start(mode) => {
                 let first = starts(model, state, mode);
-                let label = format!("start contacts {}", names::mode(mode));
+                let label = format!("start contacts {}", mode.word());
                 (!first.is_empty()).then(|| remedy(&label, RemedyInput::Listed, first))
             }
             RemedyKind::Set(label, path, value) => set(label, path, value.to_owned()),

@@ -67,7 +67,7 @@ pub fn label(model: &Model, intervention: &Intervention, setting: Option<(&str, 
         Intervention::Force { slave, mode, hold } => {
             let held = if *hold { "held " } else { "" };
             let slave = names::slave(model, *slave);
-            format!("{slave} {held}{}", names::mode(*mode))
+            format!("{slave} {held}{}", mode.word())
         }
         Intervention::Assume(starts) => names::starts(model, starts, 3),
         Intervention::Release { slave } => format!("{} released", names::slave(model, *slave)),

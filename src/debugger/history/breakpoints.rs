@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
 use stickslip_core::words::noun_for;
-use stickslip_core::{Mode, Model};
+use stickslip_core::{Mode, Model, Position};
 use stickslip_scene::joined;
 
 /// Condition of a breakpoint. A node is a slave number; `None` matches any node.
@@ -48,7 +48,7 @@ pub enum Condition {
 }
 
 /// A position in a run; a missing minor or major iteration means the first.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename = "Place")]
 pub struct RunPlace {
     /// From 1.
@@ -57,6 +57,16 @@ pub struct RunPlace {
     pub major: u32,
     /// From 1.
     pub minor: u32,
+}
+
+impl From<Position> for RunPlace {
+    fn from(at: Position) -> RunPlace {
+        RunPlace {
+            increment: at.increment,
+            major: at.major,
+            minor: at.minor,
+        }
+    }
 }
 
 impl FromStr for RunPlace {
@@ -224,12 +234,8 @@ impl Condition {
                 now.kind.is_failure() || matches!(now.kind, PointKind::Cut | PointKind::Refused)
             }
             Condition::At(place) => {
-                let place = (place.increment, place.major, place.minor);
-                let at = |strip: &Strip| {
-                    let at = strip.position;
-                    (at.increment, at.major, at.minor)
-                };
-                at(now) >= place && (!before.kind.is_solved() || at(before) < place)
+                let reaches = |strip: &Strip| RunPlace::from(strip.position) >= *place;
+                reaches(now) && !(before.kind.is_solved() && reaches(before))
             }
         }
     }

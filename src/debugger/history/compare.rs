@@ -8,8 +8,9 @@
 
 use crate::explain::names;
 use crate::history::branches::{self, Cost};
+use crate::history::breakpoints::RunPlace;
 use crate::{Frame, Strip, Tree};
-use stickslip_core::{Mode, Model, Position};
+use stickslip_core::{Mode, Model};
 use stickslip_scene::{first_of, shortest, sig2};
 
 /// Relative difference below which two states are the same.
@@ -34,8 +35,6 @@ pub struct NodeSide {
     /// Total forces (normal, tangential) after the iteration; `None` if the frame is thinned or nothing was
     /// solved.
     pub forces: Option<[f64; 2]>,
-    /// Gap (length), negative for penetration; `None` as for the forces.
-    pub gap: Option<f64>,
 }
 
 /// One branch at one point.
@@ -43,18 +42,12 @@ pub struct NodeSide {
 pub struct Side {
     /// Number in [`Tree::branches`].
     pub branch: usize,
-    /// Index on the branch's line.
-    pub at: usize,
-    /// Increment, major and minor iteration.
-    pub position: Position,
     /// Load factor λ.
     pub load_factor: f64,
     /// One entry per slave node.
     pub nodes: Vec<NodeSide>,
     /// Relative residual: after the major iteration if it ended here, otherwise before it.
     pub residual: f64,
-    /// Relative violation of the interface conditions at the same time; `None` if it was not measured.
-    pub interface: Option<f64>,
     /// Cost from the root to here.
     pub cost: Cost,
 }
@@ -101,19 +94,14 @@ fn side(tree: &Tree, branch: usize, at: usize) -> Option<Side> {
             mode: strip.before(s),
             next: strip.next(s),
             forces: found.map(|found| [found.f_n, found.f_t]),
-            gap: found.map(|found| found.gap),
         }
     };
-    let after = strip.after.as_deref().copied();
-    let before = frame.event.as_ref().map(|event| event.before);
+    let after = strip.after.as_deref();
     Some(Side {
         branch,
-        at,
-        position: strip.position,
         load_factor: strip.load_factor,
         nodes: (0..strip.slaves()).map(node).collect(),
         residual: after.map_or(strip.residual, |after| after.relative),
-        interface: after.or(before).map(|norms| norms.interface),
         cost: branches::cost(tree, branch, 0..at + 1),
     })
 }
@@ -142,10 +130,7 @@ fn common(tree: &Tree, a: usize, b: usize) -> Option<[usize; 2]> {
         let places = |branch: usize| {
             branches::strips(tree, branch, start).filter(|(_, strip)| strip.kind.is_solved())
         };
-        let place = |strip: &Strip| {
-            let at = strip.position;
-            (at.increment, at.major, at.minor)
-        };
+        let place = |strip: &Strip| RunPlace::from(strip.position);
         places(a).find_map(|(at_a, x)| {
             let (at_b, _) = places(b).find(|(_, y)| place(x) == place(y))?;
             Some([at_a, at_b])
@@ -243,7 +228,7 @@ fn differing(model: &Model, a: &Side, b: &Side) -> String {
         .filter(|&s| a.nodes[s].next != b.nodes[s].next)
         .collect();
     let describe = |&s: &usize| {
-        let [a, b] = [a.nodes[s].next, b.nodes[s].next].map(names::mode);
+        let [a, b] = [a.nodes[s].next, b.nodes[s].next].map(Mode::word);
         format!("{} {a}, {b}", names::slave(model, s))
     };
     if nodes.is_empty() {

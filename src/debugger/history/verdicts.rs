@@ -2,9 +2,10 @@
 
 use super::branches::{Cost, cost, name};
 use super::compare::{self, Sameness};
+use super::frame::Frame;
 use super::strip::PointKind;
 use super::tree::Tree;
-use stickslip_core::{Cycle, Failure, Outcome, Position};
+use stickslip_core::{Cycle, Failure, Outcome};
 use stickslip_scene::shortest;
 
 /// How a branch ends so far. Branches are numbers in [`Tree::branches`].
@@ -52,15 +53,11 @@ pub struct Summary {
     pub name: String,
     /// Number of its parent; `None` for the first.
     pub parent: Option<usize>,
-    /// Index on its line of its first own point.
-    pub from: usize,
     /// Number of points on its line, including those of its parents.
     pub length: usize,
     /// Whether it is the session's current branch.
     pub is_current: bool,
-    /// Its last minor iteration.
-    pub position: Position,
-    /// Load factor λ of that iteration.
+    /// Load factor λ of its last minor iteration.
     pub load_factor: f64,
     /// How it ends.
     pub verdict: BranchEnd,
@@ -85,10 +82,8 @@ fn summary(tree: &Tree, number: usize) -> Option<Summary> {
         number,
         name: name(tree, number),
         parent: branch.parent,
-        from: branch.from,
         length,
         is_current: number == tree.current(),
-        position: tip.position,
         load_factor: tip.load_factor,
         verdict: verdict(tree, number),
         own: cost(tree, number, branch.from..length),
@@ -113,20 +108,15 @@ pub fn verdict(tree: &Tree, branch: usize) -> BranchEnd {
         | PointKind::Refused
         | PointKind::Major => BranchEnd::Running,
         PointKind::Cycle => {
-            let own = frame
-                .event
-                .as_deref()
-                .and_then(|event| cycle(&event.outcome));
+            let own = cycle(frame);
             let same = |&other: &usize| {
                 let Some((frame, strip)) = tree.tip(other) else {
                     return false;
                 };
-                let theirs = frame
-                    .event
-                    .as_deref()
-                    .and_then(|event| cycle(&event.outcome));
                 strip.position.increment == tip.position.increment
-                    && own.zip(theirs).is_some_and(|(a, b)| is_same_cycle(a, b))
+                    && own
+                        .zip(cycle(frame))
+                        .is_some_and(|(a, b)| is_same_cycle(a, b))
             };
             others()
                 .find(same)
@@ -181,8 +171,8 @@ fn ends_marked(tree: &Tree, branch: usize) -> bool {
     })
 }
 
-fn cycle(outcome: &Outcome) -> Option<&Cycle> {
-    match outcome {
+fn cycle(frame: &Frame) -> Option<&Cycle> {
+    match &frame.event.as_deref()?.outcome {
         Outcome::Failed(Failure::Cycle(cycle)) => Some(cycle),
         _ => None,
     }

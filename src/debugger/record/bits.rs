@@ -5,7 +5,7 @@
 //! it is not a signature.
 
 use serde::ser::{self, Serialize, Serializer};
-use std::fmt::{self, Display};
+use std::fmt;
 
 /// An odd number with ones and zeros everywhere: the fraction of the golden ratio.
 const FACTOR: u64 = 0x9e37_79b9_7f4a_7c15;
@@ -26,13 +26,13 @@ struct Bits([u64; 4]);
 
 impl Bits {
     #[inline]
-    fn add(&mut self, word: u64) -> Result<(), NoWord> {
+    fn add(&mut self, word: u64) -> Result<(), fmt::Error> {
         let [first, second, third, fourth] = self.0;
         self.0 = [second, third, fourth, mixed(first, word)];
         Ok(())
     }
 
-    fn add_bytes(&mut self, bytes: &[u8]) -> Result<(), NoWord> {
+    fn add_bytes(&mut self, bytes: &[u8]) -> Result<(), fmt::Error> {
         self.add(bytes.len() as u64)?;
         let (fours, rest) = bytes.as_chunks::<4>();
         for four in fours {
@@ -44,28 +44,10 @@ impl Bits {
     }
 }
 
-/// Only a value's own code can fail.
-#[derive(Debug)]
-struct NoWord;
-
-impl Display for NoWord {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("the value has no bits")
-    }
-}
-
-impl std::error::Error for NoWord {}
-
-impl ser::Error for NoWord {
-    fn custom<T: Display>(_: T) -> Self {
-        NoWord
-    }
-}
-
 /// Methods that add one word.
 macro_rules! words {
     ($($name:ident: $of:ty, $word:expr;)*) => {
-        $(#[inline] fn $name(self, value: $of) -> Result<(), NoWord> {
+        $(#[inline] fn $name(self, value: $of) -> Result<(), fmt::Error> {
             let word: fn($of) -> u64 = $word;
             self.add(word(value))
         })*
@@ -75,7 +57,7 @@ macro_rules! words {
 /// Methods that start a compound value: they add its length or variant.
 macro_rules! compounds {
     ($($name:ident($($argument:ident: $of:ty),*), $word:expr;)*) => {
-        $(fn $name(self, $($argument: $of),*) -> Result<Self, NoWord> {
+        $(fn $name(self, $($argument: $of),*) -> Result<Self, fmt::Error> {
             self.add($word as u64)?;
             Ok(self)
         })*
@@ -84,7 +66,7 @@ macro_rules! compounds {
 
 impl Serializer for &mut Bits {
     type Ok = ();
-    type Error = NoWord;
+    type Error = fmt::Error;
     type SerializeSeq = Self;
     type SerializeTuple = Self;
     type SerializeTupleStruct = Self;
@@ -118,28 +100,28 @@ impl Serializer for &mut Bits {
         serialize_struct_variant(_name: &'static str, index: u32, _variant: &'static str, _count: usize), index;
     }
 
-    fn serialize_str(self, text: &str) -> Result<(), NoWord> {
+    fn serialize_str(self, text: &str) -> Result<(), fmt::Error> {
         self.add_bytes(text.as_bytes())
     }
 
-    fn serialize_bytes(self, bytes: &[u8]) -> Result<(), NoWord> {
+    fn serialize_bytes(self, bytes: &[u8]) -> Result<(), fmt::Error> {
         self.add_bytes(bytes)
     }
 
-    fn serialize_none(self) -> Result<(), NoWord> {
+    fn serialize_none(self) -> Result<(), fmt::Error> {
         self.add(0)
     }
 
-    fn serialize_some<T: Serialize + ?Sized>(self, value: &T) -> Result<(), NoWord> {
+    fn serialize_some<T: Serialize + ?Sized>(self, value: &T) -> Result<(), fmt::Error> {
         self.add(1)?;
         value.serialize(self)
     }
 
-    fn serialize_unit(self) -> Result<(), NoWord> {
+    fn serialize_unit(self) -> Result<(), fmt::Error> {
         Ok(())
     }
 
-    fn serialize_unit_struct(self, _: &'static str) -> Result<(), NoWord> {
+    fn serialize_unit_struct(self, _: &'static str) -> Result<(), fmt::Error> {
         Ok(())
     }
 
@@ -148,7 +130,7 @@ impl Serializer for &mut Bits {
         _: &'static str,
         index: u32,
         _: &'static str,
-    ) -> Result<(), NoWord> {
+    ) -> Result<(), fmt::Error> {
         self.add(index.into())
     }
 
@@ -156,7 +138,7 @@ impl Serializer for &mut Bits {
         self,
         _: &'static str,
         value: &T,
-    ) -> Result<(), NoWord> {
+    ) -> Result<(), fmt::Error> {
         value.serialize(self)
     }
 
@@ -166,7 +148,7 @@ impl Serializer for &mut Bits {
         index: u32,
         _: &'static str,
         value: &T,
-    ) -> Result<(), NoWord> {
+    ) -> Result<(), fmt::Error> {
         self.add(index.into())?;
         value.serialize(self)
     }
@@ -181,19 +163,19 @@ macro_rules! parts {
     ($($compound:ident::$method:ident($($key:ident)?);)*) => {
         $(impl ser::$compound for &mut Bits {
             type Ok = ();
-            type Error = NoWord;
+            type Error = fmt::Error;
 
             #[inline]
             fn $method<T: Serialize + ?Sized>(
                 &mut self,
                 $($key: &'static str,)?
                 value: &T,
-            ) -> Result<(), NoWord> {
+            ) -> Result<(), fmt::Error> {
                 $(self.add_bytes($key.as_bytes())?;)?
                 value.serialize(&mut **self)
             }
 
-            fn end(self) -> Result<(), NoWord> {
+            fn end(self) -> Result<(), fmt::Error> {
                 Ok(())
             }
         })*
@@ -211,17 +193,17 @@ parts! {
 
 impl ser::SerializeMap for &mut Bits {
     type Ok = ();
-    type Error = NoWord;
+    type Error = fmt::Error;
 
-    fn serialize_key<T: Serialize + ?Sized>(&mut self, key: &T) -> Result<(), NoWord> {
+    fn serialize_key<T: Serialize + ?Sized>(&mut self, key: &T) -> Result<(), fmt::Error> {
         key.serialize(&mut **self)
     }
 
-    fn serialize_value<T: Serialize + ?Sized>(&mut self, value: &T) -> Result<(), NoWord> {
+    fn serialize_value<T: Serialize + ?Sized>(&mut self, value: &T) -> Result<(), fmt::Error> {
         value.serialize(&mut **self)
     }
 
-    fn end(self) -> Result<(), NoWord> {
+    fn end(self) -> Result<(), fmt::Error> {
         Ok(())
     }
 }

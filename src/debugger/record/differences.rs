@@ -7,8 +7,8 @@
 //! if that is larger. NaN equals NaN. Names of scenes are not compared.
 
 use super::snapshot::{Displacement, Recorded, SlaveRecord, Snapshot};
-use crate::explain::names;
 use crate::explain::tested::Dimension::{self, Force, Length, Ratio};
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::fmt::{self, Debug};
 use stickslip_core::linear::singular::LooseMotion;
@@ -64,24 +64,28 @@ pub struct Differences {
 /// A value of one side.
 enum FieldValue {
     /// Compared exactly.
-    Text(String),
+    Text(Cow<'static, str>),
     /// Compared within the tolerance, if both sides have it.
     Number(Option<f64>, Dimension),
 }
 
 /// What is compared, and its value.
-type Field = (String, FieldValue);
+type Field = (Cow<'static, str>, FieldValue);
 
-fn exact(field: &str, value: impl Debug) -> Field {
+fn exact(field: &'static str, value: impl Debug) -> Field {
     text(field, word(value))
 }
 
-fn text(field: &str, value: impl Into<String>) -> Field {
-    (field.to_owned(), FieldValue::Text(value.into()))
+fn text(field: &'static str, value: impl Into<Cow<'static, str>>) -> Field {
+    (field.into(), FieldValue::Text(value.into()))
 }
 
-fn number(field: &str, value: impl Into<Option<f64>>, of: Dimension) -> Field {
-    (field.to_owned(), FieldValue::Number(value.into(), of))
+fn number(
+    field: impl Into<Cow<'static, str>>,
+    value: impl Into<Option<f64>>,
+    of: Dimension,
+) -> Field {
+    (field.into(), FieldValue::Number(value.into(), of))
 }
 
 /// Compares two snapshots, node by node.
@@ -100,10 +104,14 @@ pub fn compare_within(a: &Snapshot, b: &Snapshot, tolerance: f64) -> Differences
         ],
     };
     found.scenes(a, b);
-    for of in [run, before, after] {
-        found.fields(None, of(a), of(b));
-    }
     let (left, right) = (&a.state, &b.state);
+    found.fields(None, run(a), run(b));
+    for (when, a, b) in [
+        ("residual before", &left.before, &right.before),
+        ("residual after", &left.after, &right.after),
+    ] {
+        found.fields(None, norms(when, a), norms(when, b));
+    }
     found.named(SLAVE, &left.slaves, &right.slaves, |s| &s.node, slave);
     let [left, right] = [left, right].map(|state| &state.displacements);
     found.named(NODE, left, right, |d| &d.node, displacement);
@@ -125,16 +133,8 @@ fn run(snapshot: &Snapshot) -> Vec<Field> {
     ]
 }
 
-fn before(snapshot: &Snapshot) -> Vec<Field> {
-    norms("residual before", snapshot.state.before.as_ref())
-}
-
-fn after(snapshot: &Snapshot) -> Vec<Field> {
-    norms("residual after", snapshot.state.after.as_ref())
-}
-
-fn norms(when: &str, norms: Option<&Norms>) -> Vec<Field> {
-    let numbers = norms.map(|norms| {
+fn norms(when: &'static str, norms: &Option<Norms>) -> Vec<Field> {
+    let numbers = norms.as_ref().map(|norms| {
         [
             ("force", norms.force, Force),
             ("relative", norms.relative, Ratio),
@@ -143,7 +143,7 @@ fn norms(when: &str, norms: Option<&Norms>) -> Vec<Field> {
         ]
     });
     let numbers = numbers.into_iter().flatten();
-    let numbers = numbers.map(|(what, value, of)| number(&format!("{when}, {what}"), value, of));
+    let numbers = numbers.map(|(what, value, of)| number(format!("{when}, {what}"), value, of));
     [exact(when, norms.is_some())]
         .into_iter()
         .chain(numbers)
@@ -152,8 +152,8 @@ fn norms(when: &str, norms: Option<&Norms>) -> Vec<Field> {
 
 fn slave(slave: &SlaveRecord) -> Vec<Field> {
     vec![
-        text("mode", names::mode(slave.mode)),
-        text("next", names::mode(slave.next)),
+        text("mode", slave.mode.word()),
+        text("next", slave.next.word()),
         text("rule", slave.rule.map_or(ABSENT, Rule::name)),
         exact("forced", slave.forced),
         number("gap", slave.gap, Length),
@@ -175,7 +175,7 @@ fn displacement(of: &Displacement) -> Vec<Field> {
 fn shear(snapshot: &Snapshot) -> Vec<Field> {
     let forces = &snapshot.state.shear;
     let numbers = (1..).zip(forces);
-    let numbers = numbers.map(|(k, value)| number(&format!("shear force {k}"), *value, Force));
+    let numbers = numbers.map(|(k, value)| number(format!("shear force {k}"), *value, Force));
     [exact("number of shear forces", forces.len())]
         .into_iter()
         .chain(numbers)
@@ -201,12 +201,11 @@ impl Differences {
         };
         let (left, right) = (values(a), values(b));
         for (path, pair) in paired(&left, &right) {
-            let text = |value: Option<&String>| value.map_or(ABSENT.to_owned(), Clone::clone);
-            self.text(None, format!("scene {path}"), text(pair.0), text(pair.1));
+            let [left, right] = [pair.0, pair.1].map(|value| value.map_or(ABSENT, String::as_str));
+            self.text(None, format!("scene {path}"), left, right);
         }
         if self.rows.len() == before {
-            let [left, right] = ["original", "differs, but not in a scalar"].map(str::to_owned);
-            self.text(None, "scene".to_owned(), left, right);
+            self.text(None, "scene", "original", "differs, but not in a scalar");
         }
     }
 
@@ -226,9 +225,8 @@ impl Differences {
             match pair {
                 (Some(left), Some(right)) => self.fields(Some(node), fields(left), fields(right)),
                 (left, right) => {
-                    let text = |there: bool| if there { "there" } else { ABSENT }.to_owned();
-                    let (left, right) = (text(left.is_some()), text(right.is_some()));
-                    self.text(Some(node), kind.to_owned(), left, right);
+                    let [left, right] = [left, right].map(|own| own.map_or(ABSENT, |_| "there"));
+                    self.text(Some(node), kind, left, right);
                 }
             }
         }
@@ -245,21 +243,27 @@ impl Differences {
                 (left, right) => {
                     let [left, right] = [left, right].map(|value| match value {
                         FieldValue::Text(text) => text,
-                        FieldValue::Number(value, _) => word(value),
+                        FieldValue::Number(value, _) => word(value).into(),
                     });
-                    self.text(node, field, left, right);
+                    self.text(node, field, &left, &right);
                 }
             }
         }
     }
 
-    fn text(&mut self, node: Option<&String>, field: String, left: String, right: String) {
+    fn text<'a>(
+        &mut self,
+        node: Option<&String>,
+        field: impl Into<Cow<'a, str>>,
+        left: &str,
+        right: &str,
+    ) {
         if left != right {
             self.rows.push(Difference {
                 node: node.cloned(),
-                field,
-                left,
-                right,
+                field: field.into().into_owned(),
+                left: left.to_owned(),
+                right: right.to_owned(),
                 apart: None,
             });
         }
@@ -268,7 +272,7 @@ impl Differences {
     fn number(
         &mut self,
         node: Option<&String>,
-        field: String,
+        field: Cow<str>,
         (left, right): (f64, f64),
         scale: f64,
     ) {
@@ -283,7 +287,7 @@ impl Differences {
         }
         self.rows.push(Difference {
             node: node.cloned(),
-            field,
+            field: field.into_owned(),
             left: format!("{left:?}"),
             right: format!("{right:?}"),
             apart: Some((apart, allowed)),

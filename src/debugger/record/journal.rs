@@ -77,13 +77,11 @@ pub struct Entry {
 /// Why a journal cannot be written, read or replayed.
 #[derive(Debug, thiserror::Error)]
 pub enum JournalError {
-    /// The system reports an error.
-    #[error("{}: the journal cannot be {doing}: {source}", file.display())]
+    /// The file cannot be written.
+    #[error("{}: the journal cannot be written: {source}", file.display())]
     File {
         /// Path of the journal.
         file: PathBuf,
-        /// Failed operation, such as "written".
-        doing: &'static str,
         /// Cause.
         source: io::Error,
     },
@@ -162,7 +160,7 @@ impl Journal {
             .open(path)
             .map_err(|source| match source.kind() {
                 io::ErrorKind::AlreadyExists => JournalError::Exists(path.to_owned()),
-                _ => failure(path, "written", source),
+                _ => failure(path, source),
             })?;
         let mut journal = Journal {
             path: path.to_owned(),
@@ -203,17 +201,14 @@ impl Journal {
     /// # Errors If there is no such folder, or the file cannot be written.
     pub fn create_default(scene: &Scene) -> Result<Journal, JournalError> {
         let directory = directory()?;
-        disk::create_dir_all(&directory).map_err(|e| failure(&directory, "written", e))?;
+        disk::create_dir_all(&directory).map_err(|e| failure(&directory, e))?;
         let stem = format!("{}-{}", files::stem(&scene.name), stamp(now()));
-        let name = |k: u32| match k {
-            0 => directory.join(format!("{stem}.{EXTENSION}")),
-            k => directory.join(format!("{stem}-{k}.{EXTENSION}")),
-        };
         // Several sessions can start in the same second.
         const MOST: u32 = 100;
         let mut k = 0;
         loop {
-            match Journal::create(&name(k), scene, &[]) {
+            let path = directory.join(numbered(&stem, k, EXTENSION));
+            match Journal::create(&path, scene, &[]) {
                 Err(JournalError::Exists(_)) if k < MOST => k += 1,
                 made => return made,
             }
@@ -225,7 +220,7 @@ impl Journal {
     /// # Errors
     /// If it cannot be written, or another session is writing it.
     pub fn open(path: &Path) -> Result<Journal, JournalError> {
-        let failed = |e| failure(path, "written", e);
+        let failed = |e| failure(path, e);
         let file = File::options().append(true).open(path).map_err(failed)?;
         let whole = file.metadata().map_err(failed)?.len();
         let journal = Journal {
@@ -244,7 +239,7 @@ impl Journal {
     pub fn cut(&mut self, whole_bytes: u64) -> Result<(), JournalError> {
         self.file
             .set_len(whole_bytes)
-            .map_err(|e| failure(&self.path, "written", e))?;
+            .map_err(|e| failure(&self.path, e))?;
         self.whole = whole_bytes;
         Ok(())
     }
@@ -282,7 +277,7 @@ impl Journal {
     }
 
     fn write(&mut self, line: &impl Serialize, sync: bool) -> Result<(), JournalError> {
-        let failed = |source| failure(&self.path, "written", source);
+        let failed = |source| failure(&self.path, source);
         let text = notation::line(line).map_err(|e| failed(io::Error::other(e)))? + "\n";
         let written = self
             .file
@@ -399,20 +394,31 @@ impl Record {
 }
 
 fn header(file: &str, line: &str) -> Result<JournalHeader, SceneError> {
-    /// The part that every format version has.
+    check_format(file, line, "journal", FORMAT, "")?;
+    parsed(file, 1, line)
+}
+
+/// Checks the format version of a file, which is the only part that all versions have; `instead` ends the message.
+pub(super) fn check_format(
+    file: &str,
+    text: &str,
+    kind: &str,
+    known: u32,
+    instead: &str,
+) -> Result<(), SceneError> {
     #[derive(Deserialize)]
     struct VersionLine {
         format: u32,
     }
-    if let Ok(VersionLine { format }) = notation::read(line)
-        && format != FORMAT
-    {
-        return Err(SceneError::whole(
+    match notation::read(text) {
+        Ok(VersionLine { format }) if format != known => Err(SceneError::whole(
             file,
-            format!("the journal has format {format}, but this program reads only format {FORMAT}"),
-        ));
+            format!(
+                "the {kind} has format {format}, but this program reads only format {known}{instead}"
+            ),
+        )),
+        _ => Ok(()),
     }
-    parsed(file, 1, line)
 }
 
 fn parsed<T: DeserializeOwned>(file: &str, number: usize, line: &str) -> Result<T, SceneError> {
@@ -427,10 +433,9 @@ fn damaged(file: &str, at: (usize, usize), message: &str) -> SceneError {
     }
 }
 
-fn failure(file: &Path, doing: &'static str, source: io::Error) -> JournalError {
+fn failure(file: &Path, source: io::Error) -> JournalError {
     JournalError::File {
         file: file.to_owned(),
-        doing,
         source,
     }
 }
@@ -440,6 +445,14 @@ fn failure(file: &Path, doing: &'static str, source: io::Error) -> JournalError 
 fn sync_folder(file: &Path) {
     let folder = file.parent().filter(|folder| *folder != Path::new(""));
     system::sync_folder(folder.unwrap_or(Path::new(".")));
+}
+
+/// The name of a file, with a number from 1 on if it is not the first of its name.
+pub(super) fn numbered(stem: &str, number: u32, extension: &str) -> String {
+    match number {
+        0 => format!("{stem}.{extension}"),
+        number => format!("{stem}-{number}.{extension}"),
+    }
 }
 
 /// Default folder for journals: in the user's folder for state, or for data on systems without one.

@@ -5,6 +5,7 @@
 //! Floats are written so that they read back to the same bits, including NaN and the infinities.
 
 use crate::history::strip::norms_after;
+use crate::record::journal::{check_format, numbered};
 use crate::refusal::refused_by;
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
@@ -220,25 +221,11 @@ impl Snapshot {
     ///
     /// # Errors If the text is damaged, or has an unknown format.
     pub fn from_text(file: &str, text: &str) -> Result<Snapshot, SnapshotError> {
-        /// The part that every format version has.
-        #[derive(Deserialize)]
-        struct Header {
-            format: u32,
-        }
         let text = text.strip_prefix(input::MARK).unwrap_or(text);
         let read = || {
             read::shallow(file, text, "snapshot")?;
-            if let Ok(header) = notation::read::<Header>(text)
-                && header.format != FORMAT
-            {
-                return Err(SceneError::whole(
-                    file,
-                    format!(
-                        "the snapshot has format {}, but this program reads only format {FORMAT}; use the version that wrote it",
-                        header.format
-                    ),
-                ));
-            }
+            let instead = "; use the version that wrote it";
+            check_format(file, text, "snapshot", FORMAT, instead)?;
             let snapshot: Snapshot = notation::read(text).map_err(|e| {
                 let error = read::refused(file, 1, "", &e);
                 or_mistaken(error, file, text, FileKind::Snapshot)
@@ -399,10 +386,7 @@ fn displacement(model: &Model, u: &[f64], node: usize) -> Displacement {
 pub fn free_name(scene: &str, at: Position) -> PathBuf {
     let scene = files::stem(scene);
     let stem = format!("{scene}-{}.{}.{}", at.increment, at.major, at.minor);
-    let name = |k: u32| match k {
-        0 => PathBuf::from(format!("{stem}.ron")),
-        k => PathBuf::from(format!("{stem}-{k}.ron")),
-    };
+    let name = |k: u32| PathBuf::from(numbered(&stem, k, "ron"));
     (0..1000)
         .map(name)
         .find(|name| !disk::exists(name))

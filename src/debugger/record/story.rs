@@ -43,20 +43,19 @@ pub fn story(record: &Record) -> Result<String, JournalError> {
 
 /// Whether an entry only moved the cursor.
 fn is_look(entry: &Entry) -> bool {
-    let motion = matches!(
-        entry.command,
-        Command::Forward { .. } | Command::Back { .. } | Command::Goto { .. }
-    );
-    motion && entry.solved == 0
+    entry.command.is_motion() && entry.solved == 0
 }
 
 /// The command, in a sentence.
 pub fn done(model: &Model, entry: &Entry) -> String {
     let slave = |s: &usize| names::slave(model, *s);
     match &entry.command {
-        _ if is_look(entry) => "Moved to another iteration.".into(),
-        Command::Forward { unit, count } => format!("{}.", forward(*unit, *count)),
-        Command::Back { .. } | Command::Goto { .. } => "Moved to another iteration.".into(),
+        Command::Forward { unit, count } if entry.solved > 0 => {
+            format!("{}.", forward(*unit, *count))
+        }
+        Command::Forward { .. } | Command::Back { .. } | Command::Goto { .. } => {
+            "Moved to another iteration.".into()
+        }
         Command::Force {
             slave: s,
             mode,
@@ -67,7 +66,7 @@ pub fn done(model: &Model, entry: &Entry) -> String {
             } else {
                 "for one minor iteration"
             };
-            format!("Forced {} to {} {how}.", slave(s), names::mode(*mode))
+            format!("Forced {} to {} {how}.", slave(s), mode.word())
         }
         Command::Assume(starts) => {
             format!(

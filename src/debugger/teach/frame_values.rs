@@ -9,8 +9,8 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 use stickslip_core::interface::census::census;
 use stickslip_core::{
-    ContactRecord, ContactState, Cycle, Event, Failure, Intervention, Mode, Model, Outcome, RunEnd,
-    Stability, Stepper, Trials, Until, Verdict, counted,
+    ContactRecord, ContactState, Cycle, Event, Failure, InterfaceProblem, Intervention, Mode,
+    Model, Outcome, RunEnd, Stability, Stepper, Trials, Until, Verdict, counted,
 };
 
 /// Why the interface is not known.
@@ -199,10 +199,7 @@ impl FrameValues {
     ///
     /// # Errors If the bodies cannot be condensed, or there are too many nodes for a census.
     pub fn answers(&self) -> Result<usize, Refusal> {
-        let frozen = self
-            .stepper()
-            .interface_problem()
-            .ok_or_else(|| Refusal::new(NOT_CONDENSED))?;
+        let frozen = self.frozen()?;
         Ok(census(&frozen).map_err(Refusal::new)?.answers.len())
     }
 
@@ -215,10 +212,7 @@ impl FrameValues {
     ///
     /// # Errors If the bodies cannot be condensed, or a body is loose without contact.
     pub fn interface(&self, slave: usize) -> Result<CondensedNode, Refusal> {
-        let frozen = self
-            .stepper()
-            .interface_problem()
-            .ok_or_else(|| Refusal::new(NOT_CONDENSED))?;
+        let frozen = self.frozen()?;
         let condensed = || {
             let at = frozen.nodes.iter().position(|node| node.slave == slave)?;
             let mut trials = Trials::new(&frozen)?;
@@ -274,6 +268,12 @@ impl FrameValues {
             size /= 10.0;
         }
         Ok(load)
+    }
+
+    /// The frozen problem of this major iteration.
+    fn frozen(&self) -> Result<InterfaceProblem, Refusal> {
+        let frozen = self.stepper().interface_problem();
+        frozen.ok_or_else(|| Refusal::new(NOT_CONDENSED))
     }
 
     fn stepper(&self) -> Stepper {

@@ -101,8 +101,7 @@ impl Guess {
         slave: usize,
         word: &str,
     ) -> Result<(bool, String), Refusal> {
-        let said = mode(word)
-            .ok_or_else(|| refusal!("invalid mode '{word}'; expected free, sliding or fixed"))?;
+        let said = mode(word).ok_or_else(|| Refusal::no_mode(word))?;
         let event = frame.event.as_ref().filter(|_| self.is_open(cursor, frame));
         let Some(record) = event.and_then(|event| event.nodes.get(slave)) else {
             return Err(refusal!(

@@ -280,7 +280,11 @@ impl Lesson {
             (None, Some(exchange)) => exchange::open(&exchange.0, &exchange.1)?.scene,
             (None, None) => scene(name, text, &spec)?,
         };
-        let reader = LessonReader { scene: &scene };
+        let reader = LessonReader(Context {
+            model: Some(&scene.model),
+            scene: Some(&scene),
+            ..Context::default()
+        });
         let steps = reader
             .steps(&spec)
             .map_err(|fault| placed(name, text, &[], fault))?;
@@ -383,20 +387,10 @@ fn runs(spec: &LessonSpec, scene: &Scene) -> Result<Option<Arc<Runs>>, Fault> {
     Ok(Some(Arc::new(runs)))
 }
 
-/// Checks steps against a scene.
-struct LessonReader<'a> {
-    scene: &'a Scene,
-}
+/// Checks steps against the scene of a context.
+struct LessonReader<'a>(Context<'a>);
 
 impl LessonReader<'_> {
-    fn context(&self) -> Context<'_> {
-        Context {
-            model: Some(&self.scene.model),
-            scene: Some(self.scene),
-            ..Context::default()
-        }
-    }
-
     fn steps(&self, spec: &LessonSpec) -> Result<Vec<LessonStep>, Fault> {
         if spec.steps.is_empty() {
             bail!(at!["steps"], "a lesson needs at least one step");
@@ -422,12 +416,13 @@ impl LessonReader<'_> {
 
     fn step(&self, path: Path, step: &StepSpec) -> Result<LessonStep, Fault> {
         let text = |text: &str| self.template(path.then("text"), text, LONGEST_TEXT);
+        let remark = |at: &str, text: &str| self.template(path.then(at), text, LONGEST_REMARK);
         match step {
             StepSpec::Text(text) => {
                 Ok(LessonStep::Text(self.template(path, text, LONGEST_TEXT)?))
             }
             StepSpec::Press { text: words, press } => {
-                let (action, how) = press_of(press, &self.context()).at(path.then("press"))?;
+                let (action, how) = press_of(press, &self.0).at(path.then("press"))?;
                 let text = text(words)?;
                 Ok(LessonStep::Press { text, action, how })
             }
@@ -453,7 +448,7 @@ impl LessonReader<'_> {
                     );
                 }
                 let answer = self.answer(path.then("answer"), answer)?;
-                let hint = self.template(path.then("hint"), hint, LONGEST_REMARK)?;
+                let hint = remark("hint", hint)?;
                 let asked = match &answer {
                     Answer::Number(quantity, _) if *ahead == 0 => Some(quantity),
                     _ => None,
@@ -465,7 +460,7 @@ impl LessonReader<'_> {
                     explores: false,
                     ahead: *ahead,
                     hint,
-                    then: self.template(path.then("then"), then, LONGEST_REMARK)?,
+                    then: remark("then", then)?,
                 }))
             }
             StepSpec::Find {
@@ -482,8 +477,8 @@ impl LessonReader<'_> {
                     answer,
                     explores: true,
                     ahead: 0,
-                    hint: self.template(path.then("hint"), hint, LONGEST_REMARK)?,
-                    then: self.template(path.then("then"), then, LONGEST_REMARK)?,
+                    hint: remark("hint", hint)?,
+                    then: remark("then", then)?,
                 }))
             }
             StepSpec::Reach {
@@ -508,14 +503,14 @@ impl LessonReader<'_> {
                 };
                 let solution = solution.iter().enumerate().map(|(k, line)| {
                     let path = path.then("solution").then(k);
-                    Ok(press_of(line, &self.context()).at(path)?.0)
+                    Ok(press_of(line, &self.0).at(path)?.0)
                 });
                 Ok(LessonStep::Reach(LessonTask {
                     text: text(words)?,
                     goal,
                     without: without.clone(),
-                    hint: self.template(path.then("hint"), hint, LONGEST_REMARK)?,
-                    then: self.template(path.then("then"), then, LONGEST_REMARK)?,
+                    hint: remark("hint", hint)?,
+                    then: remark("then", then)?,
                     solution: solution.collect::<Result<_, Fault>>()?,
                 }))
             }
@@ -527,7 +522,7 @@ impl LessonReader<'_> {
             .split_whitespace()
             .map(|word| word.chars().count() + 1)
             .sum::<usize>();
-        let message = match Template::read(text, &self.context()) {
+        let message = match Template::read(text, &self.0) {
             Ok(template) if length <= longest => return Ok(template),
             Ok(_) => format!(
                 "the text has {length} characters, too many for a small screen; split it into steps of at most {longest}"
@@ -538,7 +533,7 @@ impl LessonReader<'_> {
     }
 
     fn node(&self, path: Path, name: &str) -> Result<usize, Fault> {
-        action::exact(name, &self.context()).at(path)
+        action::exact(name, &self.0).at(path)
     }
 
     fn answer(&self, path: Path, answer: &AnswerSpec) -> Result<Answer, Fault> {
@@ -546,7 +541,7 @@ impl LessonReader<'_> {
             AnswerSpec::Mode { node } => Answer::Mode(self.node(path.then("node"), node)?),
             AnswerSpec::Rule { node } => Answer::Rule(self.node(path.then("node"), node)?),
             AnswerSpec::Number { of, tolerance } => {
-                let quantity = LessonQuantity::read(of, &self.context()).at(path.then("of"))?;
+                let quantity = LessonQuantity::read(of, &self.0).at(path.then("of"))?;
                 if !quantity.is_number() {
                     bail!(path.then("of"), "{of} is not a number");
                 }
@@ -573,7 +568,7 @@ impl LessonReader<'_> {
     }
 
     fn number(&self, path: &Path, text: &str) -> Result<LessonQuantity, Fault> {
-        quantity::number(text, &self.context()).at(path)
+        quantity::number(text, &self.0).at(path)
     }
 
     fn truth(&self, path: Path, when: &When) -> Result<Truth, Fault> {
@@ -642,15 +637,9 @@ fn press_of(press: &str, context: &Context) -> Result<(Action, String), Refusal>
 fn by_keys(action: &Action) -> String {
     match action {
         Action::Session(Command::Force { mode, hold, .. }) => {
-            let letter = match mode {
-                Mode::Free => 'f',
-                Mode::Sliding => 's',
-                Mode::Fixed => 'x',
-            };
-            let letter = if *hold {
-                letter.to_ascii_uppercase()
-            } else {
-                letter
+            let letter = match hold {
+                true => action::letter(*mode).to_uppercase(),
+                false => action::letter(*mode).to_owned(),
             };
             format!(" (or press m, then {letter})")
         }

@@ -5,7 +5,6 @@ use super::progress::{LessonProgress, ProgressStore};
 use super::question::{AnswerKind, TutorQuestion};
 use super::tutor::Tutor;
 use crate::action::Action;
-use crate::explain::names;
 use crate::recorded::exchange;
 use crate::refusal::{Refusal, refusal};
 use crate::{Command, Recording, Session, Unit};
@@ -84,7 +83,7 @@ fn advance(
     session: &mut Session,
     to: usize,
 ) -> Result<Vec<AnsweredQuestion>, SceneError> {
-    let lesson = tutor.shared_lesson();
+    let lesson = tutor.lesson.clone();
     let (mut answered, mut before) = (Vec::new(), Vec::new());
     while let Some(step) = lesson.steps.get(tutor.at()).filter(|_| tutor.at() < to) {
         let at = tutor.at();
@@ -116,7 +115,7 @@ fn advance(
                     options: Vec::new(),
                     answer,
                     then: tutor.last_reply(),
-                    hint: tutor.task_hint(),
+                    hint: tutor.task_hint.clone(),
                 });
                 if !tutor.is_read() {
                     return Err(fault(refusal!(
@@ -184,7 +183,7 @@ fn predict(right: u32, tutor: &mut Tutor, session: &mut Session) -> Result<(), R
             .as_ref()
             .and_then(|event| event.nodes.first());
         if let Some(node) = next {
-            let word = names::mode(node.decision.next);
+            let word = node.decision.next.word();
             tutor.answer(word, 0, session.cursor(), session.frame())?;
         }
         if tutor.guess().is_some_and(|guess| guess.right >= right) {

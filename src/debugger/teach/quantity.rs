@@ -15,7 +15,6 @@ use super::frame_values::FrameValues;
 use crate::RoundOff;
 use crate::action::{self, Context};
 use crate::explain::judged;
-use crate::explain::names;
 use crate::explain::report;
 use crate::refusal::{Refusal, refusal};
 use stickslip_core::Mode;
@@ -141,8 +140,7 @@ impl LessonQuantity {
         let whole = SolveQuantity::from_word(word);
         match (word, whole, rest) {
             ("key", _, action) => {
-                let entry = action::ACTIONS.iter().find(|entry| entry.name == action);
-                let key = entry.and_then(|entry| entry.keys.first());
+                let key = action::named(action).and_then(|entry| entry.keys.first());
                 key.map(|key| Key(key))
                     .ok_or_else(|| refusal!("{action:?} is not an action with a key"))
             }
@@ -216,8 +214,8 @@ impl LessonQuantity {
         match self {
             Right => Ok(right.into()),
             Key(key) => Ok((*key).into()),
-            Of(NodeQuantity::Mode, slave) => Ok(names::mode(look.before(*slave)).into()),
-            Of(NodeQuantity::Next, slave) => Ok(names::mode(look.next(*slave)).into()),
+            Of(NodeQuantity::Mode, slave) => Ok(look.before(*slave).word().into()),
+            Of(NodeQuantity::Next, slave) => Ok(look.next(*slave).word().into()),
             Of(NodeQuantity::Reason, slave) => {
                 let record = look.record(*slave)?;
                 Ok(report::reason(&record.decision, record.t_max != 0.0))

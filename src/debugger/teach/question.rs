@@ -4,7 +4,7 @@ use super::frame_values::FrameValues;
 use super::lesson::{Answer, Ask, Truth};
 use super::quantity::Template;
 use crate::action;
-use crate::explain::names::{self, MODES, TABLE_2};
+use crate::explain::names::{MODES, TABLE_2};
 use crate::explain::report;
 use crate::explain::tested;
 use crate::refusal::{Refusal, refusal};
@@ -157,7 +157,7 @@ impl TutorQuestion {
     /// The right answer, as typed.
     pub(super) fn solution(&self) -> String {
         match self.right {
-            RightAnswer::Mode(mode) => names::mode(mode).into(),
+            RightAnswer::Mode(mode) => mode.word().into(),
             RightAnswer::Choice(index) => (index + 1).to_string(),
             RightAnswer::Number { value, .. } => value.to_string(),
         }
@@ -194,7 +194,7 @@ impl TutorQuestion {
         let mut text = match &self.node {
             Some((_, decision, _)) if !self.is_ahead => format!(
                 "Look at row {} of Table 2: {}.",
-                names::mode(decision.before),
+                decision.before.word(),
                 compared(decision)
             ),
             _ => String::new(),
@@ -237,7 +237,7 @@ fn cells(decision: &Decision) -> Result<(Vec<String>, usize), Refusal> {
         .map(|(column, mode)| {
             let [first, second] = TABLE_2[place(decision.before)][column];
             let and = if second.is_empty() { "" } else { " and " };
-            format!("{first}{and}{second}: {}", names::mode(*mode))
+            format!("{first}{and}{second}: {}", mode.word())
         })
         .collect();
     Ok((options, place(decision.next)))

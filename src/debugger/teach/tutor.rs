@@ -25,12 +25,13 @@ const TRIES: u32 = 2;
 /// A lesson in progress.
 #[derive(Debug, Clone)]
 pub struct Tutor {
-    lesson: Arc<Lesson>,
+    pub(super) lesson: Arc<Lesson>,
     /// Index of the current step; past the last one, the lesson has ended.
     at: usize,
     text: String,
     question: Option<TutorQuestion>,
-    remark: Option<Remark>,
+    /// The reply to the last answer, or the hint that was asked for.
+    remark: Option<Paragraph>,
     /// Number of replies in this step.
     answers: u32,
     /// Whether the step is done and waits for the user to continue.
@@ -41,7 +42,7 @@ pub struct Tutor {
     fault: Option<String>,
     guess: Option<Guess>,
     /// The hint of the current task.
-    task_hint: String,
+    pub(super) task_hint: String,
     /// Seconds since the start of the lesson, as set by its owner.
     clock: u32,
     /// All answers so far.
@@ -62,15 +63,6 @@ pub struct GivenAnswer {
     pub counts: bool,
     /// Seconds since the start of the lesson.
     pub seconds: u32,
-}
-
-/// The reply to the last answer.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Remark {
-    /// The text.
-    pub text: String,
-    /// Whether the answer was right; `None` for a hint.
-    pub good: Option<bool>,
 }
 
 /// A part of the lesson's page.
@@ -117,22 +109,12 @@ impl Tutor {
         &self.lesson
     }
 
-    /// The lesson, to keep.
-    pub(super) fn shared_lesson(&self) -> Arc<Lesson> {
-        self.lesson.clone()
-    }
-
-    /// The hint of the current task.
-    pub(super) fn task_hint(&self) -> String {
-        self.task_hint.clone()
-    }
-
     /// The last reply in this step; empty if there is none.
     pub(super) fn last_reply(&self) -> String {
-        self.remark
-            .as_ref()
-            .map(|remark| remark.text.clone())
-            .unwrap_or_default()
+        match &self.remark {
+            Some(Paragraph::Right(text) | Paragraph::Wrong(text)) => text.clone(),
+            _ => String::new(),
+        }
     }
 
     /// Index of the current step, from 0; the number of steps when the lesson has ended.
@@ -320,10 +302,7 @@ impl Tutor {
             Ok(Some(text)) => (text, true),
             Err(why) => (why, false),
         };
-        self.remark = Some(Remark {
-            text,
-            good: Some(good),
-        });
+        self.remark = Some(reply(good, text));
         self.done = good;
         if good {
             self.note("done", true)
@@ -392,10 +371,7 @@ impl Tutor {
             if over && !enough {
                 text += " The history ends here, so there are no more predictions.";
             }
-            self.remark = Some(Remark {
-                text,
-                good: Some(good),
-            });
+            self.remark = Some(reply(good, text));
             self.note(word, good);
             return Ok(());
         }
@@ -416,10 +392,7 @@ impl Tutor {
             (false, true) => format!("No. It is {}", question.explained()),
             (false, false) => question.reply_to_wrong(word),
         };
-        self.remark = Some(Remark {
-            text,
-            good: Some(good),
-        });
+        self.remark = Some(reply(good, text));
         self.note(word, good);
         Ok(())
     }
@@ -441,7 +414,7 @@ impl Tutor {
             (Some(LessonStep::Reach(_)), None) => self.task_hint.clone(),
             _ => return Err(refusal!("there is no open question")),
         };
-        self.remark = Some(Remark { text, good: None });
+        self.remark = Some(Paragraph::Hint(text));
         self.note(HINT, false);
         Ok(())
     }
@@ -507,13 +480,7 @@ impl Tutor {
             let options = question.options.iter().enumerate();
             page.extend(options.map(|(k, text)| Paragraph::Option(k + 1, text.clone())));
         }
-        if let Some(Remark { text, good }) = &self.remark {
-            page.push(match good {
-                Some(true) => Paragraph::Right(text.clone()),
-                Some(false) => Paragraph::Wrong(text.clone()),
-                None => Paragraph::Hint(text.clone()),
-            });
-        }
+        page.extend(self.remark.clone());
         page
     }
 
@@ -548,6 +515,15 @@ impl Tutor {
     /// The right answer, as typed; used to play lessons automatically.
     pub fn solution(&self) -> Option<String> {
         self.question().map(TutorQuestion::solution)
+    }
+}
+
+/// The reply to an answer.
+fn reply(good: bool, text: String) -> Paragraph {
+    if good {
+        Paragraph::Right(text)
+    } else {
+        Paragraph::Wrong(text)
     }
 }
 

@@ -6,13 +6,14 @@ use crate::copied::NamedText;
 use crate::layout::Pane;
 use crate::paint;
 use crate::pane_entry::{PaneEntry, frame};
-use crate::theme;
 use crate::view::View;
 use ratatui::buffer::Buffer;
-use ratatui::layout::{Position, Rect};
+use ratatui::layout::{Margin, Position, Rect};
 use ratatui::style::Style;
 use ratatui::text::{Line, Span};
+use std::ops::Range;
 use stickslip_debugger::Tree;
+use stickslip_debugger::action;
 use stickslip_debugger::history::compare::{self, Sameness, Side};
 use stickslip_debugger::history::verdicts::{BranchEnd, Summary};
 use stickslip_debugger::history::{branches, verdicts};
@@ -57,20 +58,14 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let inner = frame(buffer, area, Pane::Branches, &title, app);
     let order = verdicts::order(&all);
     let width = usize::from(inner.width);
-    let selected = order.get(at).map_or(0, |o| o.0);
-    let compared = comparison(tree, &all, selected, width, (app, view));
-    let room = usize::from(inner.height);
-    let (top, rows) = shown(at, order.len(), room.saturating_sub(compared.len()));
-    let mut lines: Vec<Line> = order
-        .iter()
-        .enumerate()
-        .skip(top)
-        .take(rows)
-        .map(|(row, &(number, depth))| {
+    let (shown, compared) = shown(inner, tree, &all, (app, view));
+    let mut lines: Vec<Line> = shown
+        .map(|row| {
+            let (number, depth) = order[row];
             line(tree, &all[number], depth, row == at, width, (app, view))
         })
         .collect();
-    if all.len() == 1 && view.model.finished.is_none() {
+    if all.len() == 1 && !view.is_finished() {
         let text = "An intervention in an earlier state starts a new branch; nothing is lost.";
         lines.extend(paint::wrapped(text, width, theme.faint));
     }
@@ -78,24 +73,29 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     paint::lines(buffer, inner, &lines);
 }
 
-/// The first visible branch and the number of visible branches, for `room` rows.
-fn shown(at: usize, count: usize, room: usize) -> (usize, usize) {
-    let shown = rows_shown(room.max(3), at, count);
-    (shown.start, shown.len())
+/// The visible rows of the tree in the area inside the frame, and the comparison below them.
+fn shown(
+    inner: Rect,
+    tree: &Tree,
+    all: &[Summary],
+    (app, view): (&App, &View),
+) -> (Range<usize>, paint::Lines) {
+    let order = verdicts::order(all);
+    let at = app.branch.min(all.len().saturating_sub(1));
+    let selected = order.get(at).map_or(0, |o| o.0);
+    let compared = comparison(tree, all, selected, inner.width.into(), (app, view));
+    let room = usize::from(inner.height).saturating_sub(compared.len());
+    (rows_shown(room.max(3), at, order.len()), compared)
 }
 
 /// The row of the tree at a screen position.
 pub fn row_at(area: Rect, app: &App, view: &View, at: Position) -> Option<usize> {
     let tree = view.tree?;
-    let all = verdicts::summaries(tree);
-    let selected = app.branch.min(all.len().saturating_sub(1));
-    let order = verdicts::order(&all);
-    let width = usize::from(area.width.saturating_sub(2));
-    let compared = comparison(tree, &all, order.get(selected)?.0, width, (app, view));
-    let room = usize::from(area.height).saturating_sub(2);
-    let (top, rows) = shown(selected, order.len(), room.saturating_sub(compared.len()));
-    let row = usize::from(at.y).checked_sub(usize::from(area.y) + 1)?;
-    (row < rows.min(room)).then_some(top + row)
+    let inner = area.inner(Margin::new(1, 1));
+    let (shown, _) = shown(inner, tree, &verdicts::summaries(tree), (app, view));
+    let row = usize::from(at.y).checked_sub(inner.y.into())?;
+    let rows = shown.len().min(inner.height.into());
+    (row < rows).then_some(shown.start + row)
 }
 
 fn line<'a>(
@@ -121,18 +121,20 @@ fn line<'a>(
         Some(_) => format!("  time {load}  {minors} iterations"),
     };
     let room = width.saturating_sub(cost.width() + 4);
-    let name = paint::cut(&format!("{twig}{}", branch.name), room * 3 / 5);
-    let pad = (room * 3 / 5).saturating_sub(name.width());
-    let verdict = paint::cut(&verdict, (room - room * 3 / 5).saturating_sub(3));
-    let verdict_pad = (room - room * 3 / 5).saturating_sub(3 + verdict.width());
+    let names = room * 3 / 5;
+    let name_style = if selected { theme.selected } else { theme.text };
+    let [name, pad] = paint::cell(&format!("{twig}{}", branch.name), names, name_style);
+    let [verdict, verdict_pad] = paint::cell(&verdict, (room - names).saturating_sub(3), style);
     Line::from(vec![
-        Span::styled(if selected { "▸" } else { " " }, theme.focus),
-        Span::styled(current.to_string(), theme.strong),
+        paint::cursor(selected, theme),
+        Span::styled(current, theme.strong),
         Span::raw(" "),
-        Span::styled(name, if selected { theme.selected } else { theme.text }),
-        Span::raw(" ".repeat(pad + 1)),
-        Span::styled(format!("{glyph} {verdict}"), style),
-        Span::raw(" ".repeat(verdict_pad)),
+        name,
+        pad,
+        Span::raw(" "),
+        Span::styled(format!("{glyph} "), style),
+        verdict,
+        verdict_pad,
         Span::styled(cost, theme.faint),
     ])
 }
@@ -158,8 +160,8 @@ fn comparison(
     (app, view): (&App, &View),
 ) -> paint::Lines {
     let least = MODE + 2 * NUMBER;
-    let side = (width.saturating_sub(NAME + 2) / 2).clamp(least, SIDE);
-    let number = (side - MODE) / 2;
+    let wide = (width.saturating_sub(NAME + 2) / 2).clamp(least, SIDE);
+    let number = (wide - MODE) / 2;
     let theme = &app.theme;
     let current = tree.current();
     if all.len() < 2 {
@@ -187,7 +189,6 @@ fn comparison(
         (_, Some(Sameness::Different)) => "different states",
         (_, None) => "one state is not stored; go there first",
     };
-    let wide = side;
     let head = |side: &Side| {
         let name = paint::cut(&branches::name(tree, side.branch), wide - 2);
         Span::styled(format!("{name:<wide$}"), theme.heading)
@@ -242,7 +243,11 @@ fn comparison(
                     .concat(),
                 None => String::new(),
             };
-            let modes = format!("{}→{}", theme::letter(node.mode), theme::letter(node.next));
+            let modes = format!(
+                "{}→{}",
+                action::letter(node.mode),
+                action::letter(node.next)
+            );
             format!("{modes:<MODE$}{numbers}")
         };
         let name = format!(

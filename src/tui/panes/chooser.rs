@@ -2,6 +2,7 @@
 
 use crate::app::App;
 use crate::chooser_state::{Chooser, Group, Offer, Preview, PreviewContent};
+use crate::layout::top;
 use crate::paint;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Constraint, Layout, Rect};
@@ -43,11 +44,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, chooser: &Chooser, app: &App) -> Re
             let [list, preview] = Layout::vertical(rows).areas(inner);
             let rule = "─".repeat(usize::from(preview.width));
             buffer.set_string(preview.x, preview.y, rule, app.theme.faint);
-            let below = Rect {
-                y: preview.y + 1,
-                height: preview.height - 1,
-                ..preview
-            };
+            let [_, below] = top(preview, 1);
             (list, Some(below))
         }
         _ => (inner, None),
@@ -117,14 +114,14 @@ fn lines<'a>(left: &[&'a Offer], at: usize, width: usize, app: &App) -> (Vec<Lin
         if index == at {
             here = lines.len();
         }
-        let name = paint::cut(&offer.name, names);
-        let blank = " ".repeat(names.saturating_sub(name.width()));
+        let [name, blank] = paint::cell(&offer.name, names, style);
         let done = done(offer);
         let room = width.saturating_sub(names + 6 + done.width());
         lines.push(Line::from(vec![
             Span::styled(format!(" {mark} "), theme.focus),
-            Span::styled(name, style),
-            Span::raw(format!("{blank}   ")),
+            name,
+            blank,
+            Span::raw("   "),
             Span::styled(done, theme.good),
             Span::styled(paint::cut(&offer.title, room), theme.faint),
         ]));
@@ -143,15 +140,12 @@ fn look(buffer: &mut Buffer, area: Rect, preview: &Preview, side_by_side: bool, 
             return Rect::ZERO;
         }
     };
-    let (words, picture) = if side_by_side {
+    let [words, picture] = if side_by_side {
         let rows = description(glance, area.width, app).len() as u16 + 1;
-        let rows = [Constraint::Length(rows.min(WORDS)), Constraint::Fill(1)];
-        let [words, picture] = Layout::vertical(rows).areas(area);
-        (words, picture)
+        top(area, rows.min(WORDS))
     } else {
         let columns = [Constraint::Fill(1), Constraint::Length(PICTURE)];
-        let [words, picture] = Layout::horizontal(columns).areas(area);
-        (words, picture)
+        Layout::horizontal(columns).areas(area)
     };
     let mut lines = description(glance, words.width, app);
     let room = usize::from(words.height);

@@ -5,7 +5,7 @@ use crate::app::App;
 use crate::canvas::{Canvas, Dot};
 use crate::chartframe::ChartFrame;
 use crate::copied::row;
-use crate::layout::Pane;
+use crate::layout::{Pane, top};
 use crate::paint;
 use crate::pane_entry::{PaneEntry, frame};
 use crate::theme::Theme;
@@ -19,6 +19,7 @@ use stickslip_core::ContactRecord;
 use stickslip_core::contact::projection::tangent;
 use stickslip_debugger::explain::tested;
 use stickslip_debugger::explain::trail::{self, Cobweb, Cone};
+use stickslip_scene::joined;
 use stickslip_scene::number::{UNREPORTED, sig2, sig4};
 use unicode_width::UnicodeWidthStr;
 
@@ -60,7 +61,7 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         app,
     );
     let hidden = app.learning.hides(view, slave);
-    if view.model.finished.is_some() {
+    if view.is_finished() {
         let text = "CalculiX's files contain no forces at the contacts.";
         return paint::note(buffer, inner, text, theme);
     }
@@ -71,12 +72,7 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let rows = inner.height.saturating_sub(HIGH);
     lines.truncate(usize::from(rows));
     paint::lines(buffer, inner, &lines);
-    let above = lines.len() as u16;
-    let field = Rect {
-        y: inner.y + above,
-        height: inner.height - above,
-        ..inner
-    };
+    let [_, field] = top(inner, lines.len() as u16);
     let friction = view.frame().state.controls.friction.get(slave).copied();
     let trail = trail(slave, view);
     let mut pictures = vec![match record.directions {
@@ -135,59 +131,41 @@ fn words(
 ) -> paint::Lines {
     let theme = &app.theme;
     let round_off = view.round_off();
-    let known = |value: f64, text: String| {
+    let number = |value: f64| {
         if value.is_finite() {
-            text
+            sig4(value)
         } else {
             UNREPORTED.to_owned()
         }
     };
-    let pair = |v: [f64; 2]| {
-        let [x, y] = v.map(|x| known(x, sig4(x + 0.0)));
-        format!("({x}, {y})")
-    };
-    let triple = |v: [f64; 3]| {
-        let [x, y, z] = v.map(|x| known(x, sig4(x + 0.0)));
-        format!("({x}, {y}, {z})")
+    // Without the sign of −0.
+    let vector = |v: &[f64]| format!("({})", joined(v.iter().map(|x| number(x + 0.0)), ", "));
+    let surface = |none: &'static str| {
+        let spot = record.spot.as_ref();
+        let surface = spot.and_then(|spot| view.model.surfaces.get(spot.surface));
+        surface.map_or(none, |surface| &surface.name)
     };
     let place = match record.spot {
-        Some(spot) if record.directions.is_some() => {
-            let surface = view.model.surfaces.get(spot.surface);
-            surface
-                .map_or("no surface", |surface| &surface.name)
-                .to_owned()
-        }
+        Some(_) if record.directions.is_some() => surface("no surface").to_owned(),
         None => "past the ends of every surface".to_owned(),
         Some(spot) => {
-            let surface = view.model.surfaces.get(spot.surface);
-            let surface = surface.map_or("?", |surface| &surface.name);
-            format!(
-                "{surface}, element {}, ξ {}",
-                spot.element + 1,
-                known(spot.xi, sig4(spot.xi))
-            )
+            let (surface, element) = (surface("?"), spot.element + 1);
+            format!("{surface}, element {element}, ξ {}", number(spot.xi))
         }
     };
     let frame = view.event().and_then(|event| event.frames.get(slave));
     let [n, t] = match frame {
-        Some(frame) => frame.map(triple),
-        None => [record.normal, tangent(record.normal)].map(pair),
+        Some(frame) => frame.each_ref().map(|axis| vector(axis)),
+        None => [record.normal, tangent(record.normal)].map(|axis| vector(&axis)),
     };
-    let number = |value: f64| known(value, sig4(value));
     let [f_n, f_t, t_max] = [record.f_n, record.f_t, record.t_max].map(|f| round_off.force(f));
     let gap = round_off.length(record.gap);
     let row = |text: String| paint::wrapped(&text, width, theme.text);
     let mode = view.mode_before(slave);
-    let angle = record
-        .deviation()
-        .map(|angle| {
-            format!(
-                "  slip {}  angle {:.0}°",
-                number(round_off.length(record.slip)),
-                angle.to_degrees()
-            )
-        })
-        .unwrap_or_default();
+    let angle = record.deviation().map_or(String::new(), |angle| {
+        let slip = number(round_off.length(record.slip));
+        format!("  slip {slip}  angle {:.0}°", angle.to_degrees())
+    });
     let force = format!(
         "g {}  F_n {}  F_t {}  T_max {}{angle}",
         number(gap),
@@ -209,11 +187,7 @@ fn headed(buffer: &mut Buffer, area: Rect, heading: &str, app: &App) -> Rect {
         area,
         &[Line::styled(format!(" {heading}"), app.theme.heading)],
     );
-    Rect {
-        y: area.y + 1,
-        height: area.height - 1,
-        ..area
-    }
+    top(area, 1)[1]
 }
 
 fn draw_cone(

@@ -4,7 +4,7 @@ use crate::app::App;
 use crate::canvas::Canvas;
 use crate::chartframe::ChartFrame;
 use crate::copied::monitored;
-use crate::layout::Pane;
+use crate::layout::{Pane, top};
 use crate::paint;
 use crate::pane_entry::{PaneEntry, frame};
 use crate::theme::Theme;
@@ -59,11 +59,7 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     paint::lines(buffer, inner, &[caption]);
     // One row for the caption above, one for the numbers below.
     if inner.height >= 5 && inner.width > LABELS + 8 {
-        let plot = Rect {
-            y: inner.y + 1,
-            height: inner.height - 1,
-            ..inner
-        };
+        let [_, plot] = top(inner, 1);
         // The scales use the whole history, so that they do not change when going back.
         let known = frame::curve(view.frames, at);
         let noise = monitors.get(at).map_or(0.0, |monitor| view.noise(monitor));

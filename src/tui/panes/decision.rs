@@ -53,7 +53,7 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         format!("Decision  {}", view.slave(slave))
     };
     let inner = frame(buffer, area, Pane::Decision, &title, app);
-    if view.model.finished.is_some() {
+    if view.is_finished() {
         let words = view.words(slave).unwrap_or("No decision at the start.");
         let lines = paint::wrapped(words, inner.width.into(), theme.text);
         return paint::lines(buffer, inner, &lines);
@@ -62,16 +62,10 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let decision = record.map(|record| record.decision);
     let hidden = app.learning.hides(view, slave);
     let tests = record.filter(|_| !hidden).map_or(Vec::new(), |record| {
-        tests(record, view, inner.width as usize, theme)
+        let tests = tests(record, view, inner.width.into(), theme);
+        let sides = sides(record, slave, view, theme);
+        [tests, sides, bond(record, slave, view, theme)].concat()
     });
-    let tests: Vec<Line> = match record.filter(|_| !hidden) {
-        Some(record) => tests
-            .into_iter()
-            .chain(sides(record, slave, view, theme))
-            .chain(bond(record, slave, view, theme))
-            .collect(),
-        None => tests,
-    };
     let words = match (hidden, &app.learning.lesson) {
         (false, _) => words(record, slave, view),
         (true, Some(_)) => "The numbers are in the table above. What does Table 2 choose?".into(),
@@ -133,11 +127,9 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     all.extend(tests);
     all.extend(air(spare >= 5 || (2..4).contains(&spare)));
     all.extend(words);
-    let pushes = if hidden {
-        Vec::new()
-    } else {
-        pushes(slave, record, view, theme)
-    };
+    let pushes = record
+        .filter(|_| !hidden)
+        .map_or(Vec::new(), |record| pushes(slave, record, view, theme));
     let room = (inner.height as usize).saturating_sub(all.len());
     let width = usize::from(inner.width);
     let measured = record.map_or(Vec::new(), |record| {
@@ -159,17 +151,9 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
 }
 
 /// A heading, and the mode changes since the previous minor iteration that contributed most to the tested quantity.
-fn pushes(
-    slave: usize,
-    record: Option<&ContactRecord>,
-    view: &View,
-    theme: &Theme,
-) -> paint::Lines {
+fn pushes(slave: usize, record: &ContactRecord, view: &View, theme: &Theme) -> paint::Lines {
     const MOST: usize = 6;
     let heading = |text: &str| Line::styled(format!(" {text}"), theme.heading);
-    let Some(record) = record else {
-        return Vec::new();
-    };
     let Some(found) = view.pushes(slave) else {
         let on_demand = "Who pushed it: focus this pane (Tab) to compute it";
         return if view.is_costly() {
@@ -243,12 +227,11 @@ fn measured(
     let round_off = view.round_off();
     let long = |value| view.long(value);
     let signed = |value: f64| {
-        if value < 0.0 {
-            long(value)
-        } else {
-            format!(" {}", long(value))
-        }
+        let blank = if value < 0.0 { "" } else { " " };
+        format!("{blank}{}", long(value))
     };
+    let force = |value| signed(round_off.force(value));
+    let length = |value| signed(round_off.length(value));
     let pair = |[x, y]: [f64; 2]| format!(" ({}, {})", long(x), long(y));
     let place = match record.spot {
         None => " past the ends of every surface".into(),
@@ -271,49 +254,50 @@ fn measured(
             )
         }
     };
+    let ratio = if view.is_unreported(record.f_t / record.t_max) {
+        number::UNREPORTED.into()
+    } else {
+        round_off.ratio(record.f_t, record.t_max)
+    };
     let rows = [
         (
             "gap",
-            signed(round_off.length(record.gap)),
+            length(record.gap),
             "negative: penetration; on this major iteration's frozen geometry",
         ),
         (
             "F_n",
-            signed(round_off.force(record.f_n)),
+            force(record.f_n),
             "total normal force on the slave node; compression is positive",
         ),
         (
             "F_t",
-            signed(round_off.force(record.f_t)),
+            force(record.f_t),
             "total tangential force, along t (n turned anticlockwise)",
         ),
         (
             "T_max",
-            signed(round_off.force(record.t_max)),
+            force(record.t_max),
             "signed friction limit: |F_n| tan φ + cohesion",
         ),
         (
             "T_max used",
-            signed(round_off.force(record.t_max_used)),
+            force(record.t_max_used),
             "the value used in this minor iteration",
         ),
         (
             "|F_t|/T_max",
-            if view.is_unreported(record.f_t / record.t_max) {
-                format!(" {}", number::UNREPORTED)
-            } else {
-                format!(" {}", round_off.ratio(record.f_t, record.t_max))
-            },
+            format!(" {ratio}"),
             "used fraction of the friction limit",
         ),
         (
             "slip",
-            signed(round_off.length(record.slip)),
+            length(record.slip),
             "u_tS* − u_tS, measured as settings.slip says",
         ),
         (
             "drift",
-            signed(round_off.length(record.drift)),
+            length(record.drift),
             "along the surface, from the point where it stuck or where the increment started",
         ),
         ("S*", place, ""),
@@ -365,7 +349,7 @@ fn grid(
     let bar = Span::styled("│ ", theme.faint);
     let mut head = vec![Span::styled(format!("{:<LABEL$}", " mode"), theme.heading)];
     for mode in MODES {
-        let text = format!("→ {}", names::mode(mode));
+        let text = format!("→ {}", mode.word());
         head.extend([
             bar.clone(),
             Span::styled(format!("{text:<cell$}"), theme.heading),
@@ -387,8 +371,8 @@ fn grid(
         let parts: &[usize] = if *mode == Mode::Free { &[0] } else { &[0, 1] };
         for &part in parts {
             let label = match (part, here) {
-                (0, true) => format!("▸{}", names::mode(*mode)),
-                (0, false) => format!(" {}", names::mode(*mode)),
+                (0, true) => format!("▸{}", mode.word()),
+                (0, false) => format!(" {}", mode.word()),
                 _ => String::new(),
             };
             let style = if here {
@@ -428,7 +412,7 @@ fn choices(before: Mode, theme: &Theme) -> paint::Lines {
     let cell = |(column, next): (usize, &Mode)| {
         let [first, second] = TABLE_2[row][column];
         let comma = if second.is_empty() { "" } else { ", " };
-        let (before, next) = (names::mode(before), names::mode(*next));
+        let (before, next) = (before.word(), next.word());
         Line::styled(
             format!(" {before} → {next}:  {first}{comma}{second}"),
             theme.text,
@@ -476,16 +460,12 @@ fn fired(decision: &Decision, differs: bool, theme: &Theme) -> Line<'static> {
         _ => format!(" {first}, {second} "),
     };
     let wanted = match (differs, rules(decision)) {
-        (true, Some(rules)) => format!("≠ {rules}: {}", names::mode(decision.wanted)),
+        (true, Some(rules)) => format!("≠ {rules}: {}", decision.wanted.word()),
         _ => String::new(),
     };
     Line::from(vec![
         Span::styled(
-            format!(
-                " {} → {}  ",
-                names::mode(decision.before),
-                names::mode(decision.next)
-            ),
+            format!(" {} → {}  ", decision.before.word(), decision.next.word()),
             theme.heading,
         ),
         Span::styled(cell, theme.lit(decision.next)),
@@ -626,7 +606,7 @@ fn theirs(record: &ContactRecord, slave: usize, view: &View) -> Option<String> {
     if view.attached.is_none() || (said.is_none() && !differs && decision.rule != Rule::Theirs) {
         return None;
     }
-    let next = names::mode(decision.next);
+    let next = decision.next.word();
     let own = match (said, decision.rule) {
         (Some(words), _) => format!("The solver chooses {next}: “{words}”."),
         (None, Rule::Theirs) => format!("The solver chooses {next} and gives no reason."),
@@ -636,7 +616,7 @@ fn theirs(record: &ContactRecord, slave: usize, view: &View) -> Option<String> {
     Some(if differs {
         format!(
             "{own} ≠ {rules} (◁), which gives {} for the same values.",
-            names::mode(decision.wanted)
+            decision.wanted.word()
         )
     } else {
         own
@@ -650,7 +630,7 @@ fn words(record: Option<&ContactRecord>, slave: usize, view: &View) -> String {
     }
     let next = view.mode(slave);
     let Some(record) = record else {
-        return format!("No decision yet; the node starts {}.", names::mode(next));
+        return format!("No decision yet; the node starts {}.", next.word());
     };
     let decision = &record.decision;
     let mut text = match theirs(record, slave, view) {
@@ -675,13 +655,10 @@ fn words(record: Option<&ContactRecord>, slave: usize, view: &View) -> String {
     }
     match view.frame().state.nodes[slave].forced {
         Forced::Once(mode) if next == mode && mode != decision.next => {
-            text += &format!(
-                " Forced to {} for the next minor iteration.",
-                names::mode(mode)
-            );
+            text += &format!(" Forced to {} for the next minor iteration.", mode.word());
         }
         Forced::Held(mode) if record.forced != Forced::Held(mode) => {
-            text += &format!(" Held {} from here on.", names::mode(mode));
+            text += &format!(" Held {} from here on.", mode.word());
         }
         Forced::Held(_) if decision.rule != Rule::Held => text += " Held; Table 2 agrees.",
         _ => {}

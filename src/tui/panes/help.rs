@@ -90,9 +90,9 @@ impl Help {
         let last = lines.len().saturating_sub(size.height as usize);
         // A match near the end is shown at the bottom of the last page.
         let top = self.top.min(last);
-        if let Some(go) = self.search.key(name) {
-            let texts: Vec<String> = lines.iter().map(Line::to_string).collect();
-            self.top = self.search.find(go, self.top, &texts).unwrap_or(self.top);
+        let texts: Vec<String> = lines.iter().map(Line::to_string).collect();
+        if let Some(to) = self.search.key(name, self.top, &texts) {
+            self.top = to.unwrap_or(self.top);
             return true;
         }
         self.top = scrolled(top, name, PAGE, last).unwrap_or(top);

@@ -42,13 +42,9 @@ impl Reader {
 
     /// Handles a key; returns false if it closes the page.
     pub fn key(&mut self, name: &str) -> bool {
-        if let Some(go) = self.search.key(name) {
-            let lines: Vec<String> = self
-                .lines
-                .iter()
-                .map(stickslip_manual::render::Line::text)
-                .collect();
-            self.top = self.search.find(go, self.top, &lines).unwrap_or(self.top);
+        let lines: Vec<String> = self.lines.iter().map(Shown::text).collect();
+        if let Some(to) = self.search.key(name, self.top, &lines) {
+            self.top = to.unwrap_or(self.top);
             return true;
         }
         let last = self.lines.len().saturating_sub(1);

@@ -6,7 +6,7 @@ use crate::copied;
 use crate::layout::Pane;
 use crate::paint;
 use crate::pane_entry::{PaneEntry, frame};
-use crate::theme::{self, Theme};
+use crate::theme::Theme;
 use crate::view::View;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
@@ -14,8 +14,7 @@ use ratatui::style::{Modifier, Style};
 use ratatui::text::{Line, Span};
 use stickslip_core::{ContactRecord, Forced, Mode, TestedQuantity};
 use stickslip_debugger::RoundOff;
-use stickslip_debugger::action::{Filter, Sort};
-use stickslip_debugger::explain::names;
+use stickslip_debugger::action::{self, Filter, Sort};
 use stickslip_debugger::explain::tested::Dimension;
 use stickslip_scene::number;
 use stickslip_scene::shown;
@@ -68,23 +67,17 @@ impl Columns {
             pressures: false,
             angle: false,
         };
-        let wide = arrangements
-            .map(|(words, number, ratio)| Columns {
-                words,
-                number,
-                ratio,
-                ..last
-            })
-            .into_iter()
-            .find(|columns| columns.width() <= width);
-        wide.unwrap_or_else(|| {
-            (0..6)
-                .rev()
-                .map(|shown| Columns { shown, ..last })
-                .into_iter()
-                .find(|columns| columns.width() <= width)
-                .unwrap_or(Columns { shown: 0, ..last })
-        })
+        let wide = arrangements.map(|(words, number, ratio)| Columns {
+            words,
+            number,
+            ratio,
+            ..last
+        });
+        let fewer = (0..6).rev().map(|shown| Columns { shown, ..last });
+        wide.into_iter()
+            .chain(fewer)
+            .find(|columns| columns.width() <= width)
+            .unwrap_or(Columns { shown: 0, ..last })
     }
 
     /// Adds pressure and shear if they fit.
@@ -270,7 +263,7 @@ fn row<'a>(
         Span::styled(fitted(view.slave(slave), columns.name), name_style),
         Span::raw(" "),
     ];
-    if view.model.finished.is_some() {
+    if view.is_finished() {
         let words = view.words(slave).unwrap_or_default();
         spans.push(Span::styled(words, theme.mode(view.mode_before(slave))));
         return Line::from(spans);
@@ -332,9 +325,9 @@ fn modes(
     view: &View,
 ) -> Vec<Span<'static>> {
     let spell = if columns.words {
-        names::mode
+        Mode::word
     } else {
-        theme::letter
+        action::letter
     };
     let style = |mode| {
         if changed {

@@ -63,9 +63,7 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         tried.place.0 + 1
     );
     let inner = frame(buffer, area, Pane::Remedies, &title, app);
-    let trying = view
-        .background
-        .is_some_and(stickslip_debugger::session::background::Background::is_trying);
+    let trying = view.is_trying();
     let count = tried.trials.len();
     let state = match (trying, tried.all) {
         (true, Some(all)) => format!("{count} of {all} tried; Ctrl-C stops; now: {}", tried.now),
@@ -116,16 +114,14 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         let (mark, style) = mark(trial, app);
         let selected = number == at;
         let name = format!("{:<digits$} {}", number + 1, trial.label);
-        let name = paint::cut(&name, names);
+        let name_style = if selected { theme.selected } else { theme.text };
+        let [name, blank] = paint::cell(&name, names, name_style);
         let mut spans = vec![
             paint::cursor(selected, theme),
             Span::styled(mark, style),
             Span::raw(" "),
-            Span::styled(
-                name.clone(),
-                if selected { theme.selected } else { theme.text },
-            ),
-            Span::raw(" ".repeat(names.saturating_sub(name.width()))),
+            name,
+            blank,
         ];
         spans.extend(shown.iter().flat_map(|&(k, w)| {
             let style = if k == 0 { style } else { theme.text };

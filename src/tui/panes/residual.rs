@@ -3,7 +3,7 @@
 use crate::app::App;
 use crate::convergence::{self, Point};
 use crate::copied::value;
-use crate::layout::Pane;
+use crate::layout::{Pane, top};
 use crate::paint;
 use crate::pane_entry::{PaneEntry, frame};
 use crate::theme::Theme;
@@ -74,13 +74,8 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let shows_judge = inner.height >= ROOM_FOR_JUDGE && !app.learning.hides_verdict();
     above.extend(judged(view, theme).filter(|_| shows_judge));
     paint::lines(buffer, inner, &above);
-    let above = above.len() as u16;
-    // One row for the iteration numbers below the chart.
-    let plot = Rect {
-        y: inner.y + above,
-        height: inner.height.saturating_sub(above),
-        ..inner
-    };
+    // With one row for the iteration numbers below the chart.
+    let [_, plot] = top(inner, above.len() as u16);
     if plot.height < CHART {
         let room = usize::from(plot.width) / NUMBER;
         let first = view.residuals.len().saturating_sub(room);

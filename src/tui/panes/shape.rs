@@ -6,12 +6,12 @@ use crate::app::App;
 use crate::camera::Camera;
 use crate::canvas::{Canvas, Dot};
 use crate::copied::row;
-use crate::layout::Pane;
+use crate::layout::{Pane, top};
 use crate::paint;
 use crate::pane_entry::{PaneEntry, frame};
 use crate::run_shape;
 use crate::shape_lines::{self, Look};
-use crate::theme::{self, Theme};
+use crate::theme::Theme;
 use crate::view::View;
 use crate::window::Window;
 use ratatui::buffer::{Buffer, Cell};
@@ -22,6 +22,7 @@ use std::collections::HashMap;
 use std::f64::consts::FRAC_PI_4;
 use stickslip_core::{BodyKind, Model, PointDeformation};
 use stickslip_debugger::Examination;
+use stickslip_debugger::action;
 use stickslip_debugger::explain::conditions::{ConditionArrow, Conditions, Given, conditions};
 use stickslip_debugger::explain::names;
 use stickslip_debugger::explain::outline::{self, Point, outer_nodes};
@@ -403,7 +404,7 @@ fn slaves(buffer: &mut Buffer, canvas: &Canvas, window: &Window, app: &App, view
         } else {
             style
         };
-        paint::label(buffer, (x, y), theme::letter(mode), style, theme);
+        paint::label(buffer, (x, y), action::letter(mode), style, theme);
         let right = (x + 1, y);
         if app.camera.zoom > 1.0
             && seen
@@ -498,10 +499,6 @@ fn caption(buffer: &mut Buffer, inner: Rect, shown: Scales, moves: bool, app: &A
     if let Some(first) = line.spans.first_mut() {
         first.content = format!(" {}", first.content.trim_start()).into();
     }
-    let last = Rect {
-        y: inner.bottom() - 1,
-        height: 1,
-        ..inner
-    };
+    let [_, last] = top(inner, inner.height - 1);
     paint::lines(buffer, last, &[line]);
 }

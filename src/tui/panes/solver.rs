@@ -8,12 +8,11 @@ use crate::theme::Theme;
 use crate::view::{View, context};
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
-use ratatui::style::Style;
 use ratatui::text::Line;
 use stickslip_core::step::intervene::Value;
 use stickslip_core::{Parameter, counted};
 use stickslip_debugger::action::present;
-use stickslip_debugger::recorded::log::LogOrigin;
+use stickslip_debugger::recorded::log::{LogLine, LogOrigin};
 use stickslip_exchange::attach::message::Level;
 use stickslip_manual::search::Search;
 use stickslip_scene::{joined, number, shown};
@@ -48,12 +47,6 @@ pub struct SolverReader {
     pub search: Search,
 }
 
-/// A row and its style.
-struct Row {
-    text: String,
-    style: fn(&Theme) -> Style,
-}
-
 impl SolverReader {
     /// Opens a page: the log at its end, others at the top.
     pub fn new(page: Page) -> SolverReader {
@@ -77,15 +70,15 @@ impl SolverReader {
 
     /// Handles a key in a page of this size; returns false if it closes the page.
     pub fn key(&mut self, name: &str, size: Rect, view: Option<&View>) -> bool {
-        let rows = rows(self.page, size.width.into(), view);
+        let rows = rows(self.page, size.width.into(), view, &Theme::mono());
         let height = usize::from(size.height);
         let (top, last) = (
             self.first(rows.len(), height),
             rows.len().saturating_sub(height),
         );
-        if let Some(go) = self.search.key(name) {
-            let texts: Vec<String> = rows.into_iter().map(|row| row.text).collect();
-            self.top = self.search.find(go, top, &texts).or(self.top);
+        let texts: Vec<String> = rows.iter().map(Line::to_string).collect();
+        if let Some(to) = self.search.key(name, top, &texts) {
+            self.top = to.or(self.top);
             return true;
         }
         match name {
@@ -112,7 +105,7 @@ pub fn draw(
     theme: &Theme,
 ) {
     let width = usize::from(area.width.saturating_sub(2));
-    let rows = rows(reader.page, width, view);
+    let rows = rows(reader.page, width, view, theme);
     let height = usize::from(area.height.saturating_sub(2));
     let top = reader.first(rows.len(), height);
     let name = view
@@ -142,36 +135,35 @@ pub fn draw(
         true,
         theme,
     );
-    let line = |row: &Row| {
-        let text: String = row.text.chars().skip(reader.aside).collect();
-        let style = if reader.search.holds(&row.text) {
+    let line = |row: &Line| {
+        let whole = row.to_string();
+        let text: String = whole.chars().skip(reader.aside).collect();
+        let style = if reader.search.holds(&whole) {
             theme.selected
         } else {
-            (row.style)(theme)
+            row.style
         };
-        Line::styled(
-            format!(" {}", paint::cut(&text, width.saturating_sub(1))),
-            style,
-        )
+        let text = paint::cut(&text, width.saturating_sub(1));
+        Line::styled(format!(" {text}"), style)
     };
     let lines: Vec<Line> = rows.iter().skip(top).take(height).map(line).collect();
     paint::lines(buffer, inner, &lines);
 }
 
-fn rows(page: Page, width: usize, view: Option<&View>) -> Vec<Row> {
+fn rows(page: Page, width: usize, view: Option<&View>, theme: &Theme) -> paint::Lines {
     let Some((view, attached)) = view.and_then(|view| Some((view, view.attached?))) else {
         return Vec::new();
     };
     match page {
-        Page::Log => log_rows(attached.log.lines()),
-        Page::Run => printed(attached.log.lines().1, width),
-        Page::Parameters => parameters(&attached.offers.parameters, width, view),
+        Page::Log => log_rows(attached.log.lines(), theme),
+        Page::Run => printed(attached.log.lines().1, width, theme),
+        Page::Parameters => parameters(&attached.offers.parameters, width, view, theme),
     }
 }
 
 /// The text of a finished run; sentences wrap, tables do not.
-fn printed(lines: Vec<stickslip_debugger::recorded::log::LogLine>, width: usize) -> Vec<Row> {
-    let wrapped = lines
+fn printed(lines: Vec<LogLine>, width: usize, theme: &Theme) -> paint::Lines {
+    lines
         .into_iter()
         .filter(|said| said.how == LogOrigin::Printed)
         .flat_map(|said| {
@@ -180,44 +172,36 @@ fn printed(lines: Vec<stickslip_debugger::recorded::log::LogLine>, width: usize)
             } else {
                 paint::wrap(&said.text, width.saturating_sub(2))
             }
-        });
-    wrapped
-        .map(|text| Row {
-            text,
-            style: |theme| theme.text,
         })
+        .map(|text| Line::styled(text, theme.text))
         .collect()
 }
 
 /// The log, one line per row, the newest last.
-fn log_rows((first, lines): (usize, Vec<stickslip_debugger::recorded::log::LogLine>)) -> Vec<Row> {
-    let faint = |text: String| Row {
-        text,
-        style: |theme| theme.faint,
-    };
+fn log_rows((first, lines): (usize, Vec<LogLine>), theme: &Theme) -> paint::Lines {
     let mut rows = Vec::with_capacity(lines.len() + 1);
     match (first, lines.is_empty()) {
-        (0, true) => rows.push(faint("No messages yet.".into())),
+        (0, true) => rows.push(Line::styled("No messages yet.", theme.faint)),
         (0, false) => {}
-        (gone, _) => rows.push(faint(format!(
-            "No longer stored: the first {}.",
-            counted(gone, "line")
-        ))),
+        (gone, _) => rows.push(Line::styled(
+            format!("No longer stored: the first {}.", counted(gone, "line")),
+            theme.faint,
+        )),
     }
-    rows.extend(lines.into_iter().map(|said| Row {
-        text: format!("{:<HOW$} {}", said.how.word(), said.text),
-        style: match said.how {
-            LogOrigin::Message(Level::Error) => |theme| theme.bad,
-            LogOrigin::Message(Level::Warning) => |theme| theme.warning,
-            LogOrigin::Message(Level::Info) | LogOrigin::Printed => |theme| theme.text,
-            LogOrigin::Noted => |theme| theme.faint,
-        },
+    rows.extend(lines.into_iter().map(|said| {
+        let style = match said.how {
+            LogOrigin::Message(Level::Error) => theme.bad,
+            LogOrigin::Message(Level::Warning) => theme.warning,
+            LogOrigin::Message(Level::Info) | LogOrigin::Printed => theme.text,
+            LogOrigin::Noted => theme.faint,
+        };
+        Line::styled(format!("{:<HOW$} {}", said.how.word(), said.text), style)
     }));
     rows
 }
 
 /// The parameters: current value, range and description.
-fn parameters(all: &[Parameter], width: usize, view: &View) -> Vec<Row> {
+fn parameters(all: &[Parameter], width: usize, view: &View, theme: &Theme) -> paint::Lines {
     let context = context(Some(view), 0, &[]);
     let mut rows = Vec::new();
     for known in all {
@@ -245,29 +229,16 @@ fn parameters(all: &[Parameter], width: usize, view: &View) -> Vec<Row> {
             format!("   ({notes})")
         };
         let text = format!("{name} = {now}{notes}");
-        rows.push(Row {
-            text: shown::line(&text).into_owned(),
-            style: |theme| theme.strong,
-        });
+        rows.push(Line::styled(shown::line(&text).into_owned(), theme.strong));
         let about = paint::wrap(&known.about, width.saturating_sub(6));
-        rows.extend(
-            about
-                .into_iter()
-                .filter(|line| !line.is_empty())
-                .map(|line| Row {
-                    text: format!("    {line}"),
-                    style: |theme| theme.text,
-                }),
-        );
+        let about = about.iter().filter(|line| !line.is_empty());
+        rows.extend(about.map(|line| Line::styled(format!("    {line}"), theme.text)));
     }
     let last = if all.is_empty() {
         "The solver has no parameters."
     } else {
         ":set NAME VALUE changes one from here on."
     };
-    rows.push(Row {
-        text: last.into(),
-        style: |theme| theme.faint,
-    });
+    rows.push(Line::styled(last, theme.faint));
     rows
 }

@@ -48,7 +48,7 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         title += &format!("  node {} of {count}, folded", selected + 1);
     }
     let inner = frame(buffer, area, Pane::Timeline, &title, app);
-    if view.model.finished.is_some() && area.height > 2 {
+    if view.is_finished() && area.height > 2 {
         let legend = paint::cut(LETTERS, inner.width.into());
         buffer.set_string(inner.x, area.bottom() - 1, legend, theme.faint);
     }
@@ -63,7 +63,7 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let nodes = inner.y + 3;
     let below = nodes + shown.len() as u16;
 
-    let finished = view.model.finished.is_some();
+    let finished = view.is_finished();
     let second = if finished { "attempt" } else { "major" };
     for (y, text) in [(0, "increment"), (1, second)] {
         buffer.set_string(inner.x + 1, inner.y + y, text, theme.faint);
@@ -163,7 +163,7 @@ pub fn slave_at(area: Rect, app: &App, view: &View, at: Position) -> Option<usiz
 /// The slave nodes in rows: one each if all fit, or neighbours with the same cells in all visible columns together.
 fn folded(rows: usize, columns: &[Column], app: &App, view: &View) -> Vec<Range<usize>> {
     let count = view.model.contacts.len();
-    let finished = view.model.finished.is_some();
+    let finished = view.is_finished();
     let alike = |one: usize, other: usize| {
         columns.iter().all(|column| {
             let strip = &view.strips[column.at];
@@ -203,7 +203,7 @@ fn title(view: &View) -> String {
     let at = strip.position;
     let what = match strip.kind {
         Start => "start".into(),
-        _ if view.model.finished.is_some() => names::position_in(view.model, at),
+        _ if view.is_finished() => names::position_in(view.model, at),
         Intervention => "an intervention".into(),
         kind => format!(
             "increment {}, major {}, minor {}{}",
@@ -226,7 +226,7 @@ fn rule(view: &View, at: usize) -> Option<&'static str> {
     let (then, now) = (before.position, view.strips[at].position);
     let of = |at: stickslip_core::step::event::Position| (at.increment, at.attempt);
     match before.kind == Start {
-        false if view.model.finished.is_some() => {
+        false if view.is_finished() => {
             if then.increment == now.increment {
                 (then.attempt != now.attempt).then_some("│")
             } else {
@@ -241,7 +241,7 @@ fn rule(view: &View, at: usize) -> Option<&'static str> {
 
 /// Numbers of increments and majors (in a finished run, attempts) above their first columns.
 fn headings(buffer: &mut Buffer, inner: Rect, shown: &[Column], view: &View, style: Style) {
-    let finished = view.model.finished.is_some();
+    let finished = view.is_finished();
     columns::headings(buffer, inner, shown, style, |at| {
         let now = view.strips[at].position;
         let mut name = view.model.increment_name(now.increment);

@@ -451,7 +451,7 @@ impl ShapeDrawing<'_> {
         let mut x = MARGIN + 6.0;
         for mode in [Mode::Free, Mode::Sliding, Mode::Fixed] {
             marker(self.sheet, (x, y), mode, 5.0);
-            x += 12.0 + self.entry((x + 12.0, y), names::mode(mode))?;
+            x += 12.0 + self.entry((x + 12.0, y), mode.word())?;
         }
         let unit = outline::round_down(90.0 / self.window.scale);
         if unit.is_finite() && unit > 0.0 {
@@ -621,13 +621,7 @@ fn table(sheet: &mut Sheet, shown: &ExportState, rows: &[usize]) -> Result<(), P
             Anchor::Left,
         );
         marker(sheet, (MARGIN + 202.0, y), mode, 4.0);
-        sheet.text(
-            (MARGIN + 214.0, y),
-            names::mode(mode),
-            SMALL,
-            BLACK,
-            Anchor::Left,
-        );
+        sheet.text((MARGIN + 214.0, y), mode.word(), SMALL, BLACK, Anchor::Left);
         let round_off = RoundOff::new(model, &event.before);
         let forces = [found.f_n, found.f_t, found.t_max];
         let mut values = vec![sig4(round_off.length(found.gap))];

@@ -271,8 +271,8 @@ impl<'d> DeckShape<'d> {
 
     /// The elements of a group, by index.
     pub fn group_elements(&self, group: usize) -> impl Iterator<Item = usize> {
-        let bodies = (0..self.bodies.len()).filter(move |body| self.group_of[*body] == group);
-        bodies.flat_map(|body| self.elements(body))
+        let of = |element: usize| self.group(self.deck.elements[element].nodes[0]);
+        (0..self.deck.elements.len()).filter(move |element| of(*element) == Some(group))
     }
 
     /// Extent of a group along a direction.
