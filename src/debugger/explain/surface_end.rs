@@ -31,9 +31,11 @@ struct NearEnd {
     /// Distance past the end along the surface, and behind it (length).
     past: f64,
     depth: f64,
-    /// Whether the node is free, past the end and behind it. Otherwise it slides at the end: so close to it that a smaller increment
-    /// does not help, or it has left the surface in the failed iterate.
+    /// Whether the node is free, past the end and behind it. Otherwise it slides at the end, or has left the surface in the failed
+    /// iterate.
     is_behind: bool,
+    /// Whether it slides outwards, so close to the end that a smaller increment does not help.
+    slides_off: bool,
 }
 
 /// The surfaces behind whose end a slave node is in the last equilibrium, or at whose end it slides there.
@@ -55,7 +57,10 @@ pub fn passed_end(
 ) -> Option<(String, bool)> {
     let model = stepper.model().clone();
     let mut near = near_ends(&model, state);
-    near.retain(|found| found.is_behind == is_behind);
+    near.retain(|found| match is_behind {
+        true => found.is_behind,
+        false => found.slides_off,
+    });
     near.sort_by(|a, b| a.past.total_cmp(&b.past));
     near.truncate(MOST_NODES);
     let mut lost = None;
@@ -113,8 +118,9 @@ fn near_ends(model: &Model, state: &State) -> Vec<NearEnd> {
                 let slides = node.mode == Mode::Sliding
                     && node.spot.is_some_and(|spot| spot.surface == surface);
                 let is_behind = is_free && past >= 0.0 && depth > DEEP * model.length;
-                let has_left = state.nodes[slave].spot.is_none() || past > -DEEP * model.length;
-                if past.abs() < NEAR * model.length && (is_behind || slides && has_left) {
+                let is_at_end = past > -DEEP * model.length;
+                let leaves = slides && (is_at_end || state.nodes[slave].spot.is_none());
+                if past.abs() < NEAR * model.length && (is_behind || leaves) {
                     found.push(NearEnd {
                         slave,
                         surface,
@@ -122,6 +128,8 @@ fn near_ends(model: &Model, state: &State) -> Vec<NearEnd> {
                         past,
                         depth,
                         is_behind,
+                        // A slip is positive against the walk.
+                        slides_off: slides && is_at_end && node.sign * end.sign < 0.0,
                     });
                 }
             }
