@@ -1,7 +1,7 @@
 //! The limit load: where a body becomes loose, and why (friction is used up, or no contact presses against the motion any more),
 //! or where the equilibrium path has its largest load.
 //!
-//! **End of a surface.** A node gets behind its surface around an end of it ([`super::surface_end`]).
+//! **End of a surface.** A node gets behind its surface around an end of it, or slides off it ([`super::surface_end`]).
 //!
 //! **Largest load.** From the last equilibrium, follows the path by arc length until the load falls, the path ends at a change of
 //! contacts, or every further step inverts an element.

@@ -1,8 +1,8 @@
-//! A node that gets behind its surface around one of the surface's ends: contact acts only alongside a surface, so the node is
-//! inside as soon as it is over the surface again, however small the increment.
+//! A node that gets behind its surface around one of the surface's ends, or slides off it: contact acts only alongside a surface, so
+//! the node is inside as soon as it is over the surface again, however small the increment, and off the end nothing carries its force.
 //!
-//! The last equilibrium shows which free nodes are past an end and behind it. The increment is then repeated with such a node held
-//! free: if it passes, and the node is over the surface, only that node's penetration ends the path.
+//! The last equilibrium shows which nodes are past an end and behind it, or slide outwards at it. The increment is then repeated with
+//! such a node held free: if forces balance while the node is inside, or nowhere, the end of the surface ends the path.
 
 use super::majors::slope;
 use super::names;
