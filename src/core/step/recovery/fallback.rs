@@ -7,14 +7,12 @@
 //! 1. in two unequal parts: first the smaller part of the golden section, which no sum of halves equals;
 //! 2. with T_max in the equations ([`crate::model::BoundUpdate::Consistent`]) from the first rung on;
 //! 3. with touching nodes held at the projections of their start positions ([`crate::model::Touch::Start`]);
-//! 4. with the turning of the contact geometry in the tangent ([`crate::model::Geometry::Consistent`]): without it the major
-//!    iterations may diverge, however small the increment;
-//! 5. with sliding held back ([`super::proximal`]): this one may end on another branch of equilibrium, marked.
+//! 4. with sliding held back ([`super::proximal`]): this one may end on another branch of equilibrium, marked.
 //!
 //! If `settings.search` allows it, the search continues:
 //!
-//! 6. with parts down to 1/4096 of the least increment;
-//! 7. with the loads of the last equilibrium, from which a damped motion leads to the next one (`damped`), which is
+//! 5. with parts down to 1/4096 of the least increment;
+//! 6. with the loads of the last equilibrium, from which a damped motion leads to the next one (`damped`), which is
 //!    marked.
 //!
 //! Before all others, if a body is unsupported at the start of the history, nodes that touch without a gap start fixed.
@@ -22,7 +20,7 @@
 //! Each fallback is cut into halves as before and stays in force until a part of the increment is accepted. If none helps, the
 //! last half is repeated without a fallback, so that the failed state matches the reported failure.
 
-use crate::model::{Geometry, Touch};
+use crate::model::Touch;
 use crate::{BoundUpdate, Settings, SubIncrement};
 use serde::{Deserialize, Serialize};
 
@@ -42,8 +40,6 @@ crate::words! {
         Consistent "t_max: consistent",
         /// Touching nodes are held at the projections of their start positions.
         Start "touch: start",
-        /// The tangent follows the contact geometry.
-        Geometry "geometry: consistent",
         /// Sliding is held back ([`super::proximal`]).
         Held "held-back sliding",
         /// Parts smaller than the least increment.
@@ -76,13 +72,14 @@ impl Fallback {
     /// The settings in force with this fallback.
     pub(in crate::step) fn in_force(self, mut settings: Settings) -> Settings {
         match self {
-            Fallback::Touching | Fallback::Section | Fallback::Back => {}
+            Fallback::Touching
+            | Fallback::Section
+            | Fallback::Held
+            | Fallback::Deeper
+            | Fallback::Release
+            | Fallback::Back => {}
             Fallback::Consistent => settings.t_max = BoundUpdate::Consistent,
             Fallback::Start => settings.touch = Touch::Start,
-            // The later ones need it as much.
-            Fallback::Geometry | Fallback::Held | Fallback::Deeper | Fallback::Release => {
-                settings.geometry = Geometry::Consistent;
-            }
         }
         settings
     }
