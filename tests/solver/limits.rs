@@ -243,8 +243,8 @@ fn the_largest_load_on_the_path_is_named_where_the_search_ends() {
     assert!((load - highest).abs() < 1e-5, "{load} {highest}");
 }
 
-/// The path may also end where contacts change, or where a node gets behind its surface around the end, or in an element that turns inside out: the load lies between the last increment and
-/// the one that failed.
+/// The path may also end where contacts change, where a node gets around or slides off the end of its surface, or in an element that
+/// turns inside out: the load lies between the last increment and the one that failed.
 #[test]
 fn the_end_of_the_path_is_named_where_contacts_change_or_an_element_is_inverted() {
     for (file, up_to, beyond) in [
@@ -262,6 +262,21 @@ fn the_end_of_the_path_is_named_where_contacts_change_or_an_element_is_inverted(
             "tests/findings/equilibrium-is-lost.ron",
             "equilibrium is lost at load ",
             "with the loads just beyond held, a damped motion leaves it; node q.23 has moved by ",
+        ),
+        (
+            "tests/findings/slides-off-the-end-of-its-surface.ron",
+            "beyond load ",
+            "q.1 slides off the end of surface fp at (-0.1009, 0.4627), where it transmits F_n = 0.9644 (held free, it is inside",
+        ),
+        (
+            "tests/findings/slides-off-the-end-and-snaps.ron",
+            "beyond load ",
+            "s.5 slides off the end of surface f at (1.737, 0.01805), where it transmits F_n = 2.716 (held free, no equilibrium",
+        ),
+        (
+            "tests/findings/load-falls-where-a-contact-opens.ron",
+            "equilibrium exists on this path up to load ",
+            "beyond it the load falls along the path",
         ),
         (
             "tests/findings/path-ends-in-an-inverted-element.ron",

@@ -418,7 +418,7 @@ impl Failure {
     pub fn culprit(&self) -> Option<usize> {
         match self {
             Failure::Cycle(cycle) => cycle.members.first().map(|(slave, _)| *slave),
-            Failure::MajorCycle(cycle) => cycle.members.first().map(|(slave, _)| *slave),
+            Failure::MajorCycle(cycle) => cycle.changing().next().map(|(slave, _)| *slave),
             Failure::MinorLimit { changing, .. } => changing.first().copied(),
             Failure::Refused(found) => found.slave,
             Failure::CutTooOften { slave, .. } | Failure::OverConstrained { slave, .. } => {

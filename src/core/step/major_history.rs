@@ -57,6 +57,15 @@ pub struct RepeatScales {
     pub length: f64,
 }
 
+impl MajorCycle {
+    /// The members that change their mode or element. The others follow them; if there are none, only numbers change.
+    pub fn changing(&self) -> impl Iterator<Item = &(usize, Vec<Stop>)> {
+        let changes = |stops: &[Stop]| stops.windows(2).any(|pair| pair[0] != pair[1]);
+        let members = self.members.iter();
+        members.filter(move |(_, stops)| changes(stops))
+    }
+}
+
 impl MajorEntry {
     fn from_node(node: &ContactState, at: [f64; 2]) -> Self {
         MajorEntry {

@@ -1,7 +1,7 @@
 //! The limit load: where a body becomes loose, and why (friction is used up, or no contact presses against the motion any more),
 //! or where the equilibrium path has its largest load.
 //!
-//! **End of a surface.** A node gets behind its surface around an end of it ([`super::surface_end`]).
+//! **End of a surface.** A node gets behind its surface around an end of it, or slides off it ([`super::surface_end`]).
 //!
 //! **Largest load.** From the last equilibrium, follows the path by arc length until the load falls, the path ends at a change of
 //! contacts, or every further step inverts an element.
@@ -27,6 +27,7 @@ use super::{names, strain};
 use std::collections::HashSet;
 use std::ops::ControlFlow;
 use std::sync::Arc;
+use stickslip_core::model::Geometry;
 use stickslip_core::plane::max_abs;
 use stickslip_core::step::arc_state::Change;
 use stickslip_core::{
@@ -94,7 +95,9 @@ fn largest_load(
     stop: &dyn Fn() -> bool,
 ) -> Option<(f64, PathEnd)> {
     let model = stepper.model().clone();
-    let along = state.along_path(&model, FIRST_STEP * model.length)?;
+    let mut along = state.along_path(&model, FIRST_STEP * model.length)?;
+    // The tangent does not change the states on the path.
+    Arc::make_mut(&mut along.controls).settings.geometry = Geometry::Consistent;
     let ahead = along.way.as_ref()?.ahead;
     let largest = max_abs(&model.path);
     let (mut best, mut steps) = (state.start.load_factor, 0);
@@ -129,11 +132,15 @@ fn largest_load(
         }
         if (best - load) * ahead > FALL * largest {
             // An increment along the tangent, along which the load rises, has passed the maximum if it ends below its start: in the
-            // same modes. In others the path may lead back.
-            let modes = now.nodes.iter().map(|node| node.mode);
-            let start = state.start.nodes.iter().map(|node| node.mode);
+            // same modes, or in those behind the corner ahead. In others the path may lead back.
+            let changes = now.way.as_ref().map(|way| way.next.clone());
+            let mut both = now.nodes.iter().zip(&state.start.nodes).enumerate();
+            let is_ahead = both.all(|(contact, (now, start))| {
+                let ahead = |change: &Change| (change.contact, change.to) == (contact, now.mode);
+                now.mode == start.mode || changes.iter().flat_map(|c| c.iter()).any(ahead)
+            });
             let has_risen = best != state.start.load_factor;
-            return ControlFlow::Break(has_risen || modes.eq(start));
+            return ControlFlow::Break(has_risen || is_ahead);
         }
         if (load - best) * ahead > 0.0 {
             best = load;
@@ -279,9 +286,16 @@ fn of_cut_increment(
             return None;
         }
         let model = stepper.model().clone();
-        return passed_end(stepper, state, stop)
-            .or_else(|| largest_load(stepper, state, stop).map(|found| words(&found, &model)))
-            .or_else(|| moves_away(&model, state, stop));
+        let path = passed_end(stepper, state, true, stop)
+            .map(|(text, _)| text)
+            .or_else(|| largest_load(stepper, state, stop).map(|found| words(&found, &model)));
+        if path.is_some() {
+            return path;
+        }
+        let (end, is_inside) = passed_end(stepper, state, false, stop).unzip();
+        let certain = end.clone().filter(|_| is_inside == Some(true));
+        let moves = || moves_away(&model, state, stop);
+        return certain.or_else(moves).or(end);
     };
     let found = reach(stepper, state, stop)?;
     let LoadLimitProbe { load, from, .. } = found;

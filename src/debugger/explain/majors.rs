@@ -99,11 +99,9 @@ pub fn cycle_words(model: &Model, attempt: &Attempt, round: &MajorCycle) -> Vec<
     };
     let places = model.places(&last.u);
     let mut lines = Vec::new();
-    // Members that change come first; if there are any, the others only follow them.
-    let changes = |stops: &[Stop]| hops(stops).is_some() || switches(stops).is_some();
-    let mut members: Vec<&(usize, Vec<Stop>)> = round.members.iter().collect();
-    if members.iter().any(|(_, stops)| changes(stops)) {
-        members.retain(|(_, stops)| changes(stops));
+    let mut members: Vec<&(usize, Vec<Stop>)> = round.changing().collect();
+    if members.is_empty() {
+        members.extend(&round.members);
     }
     for (s, stops) in members.iter().take(MOST_NODES) {
         let Some(contact) = model.contacts.get(*s) else {

@@ -1,16 +1,16 @@
-//! A node that gets behind its surface around one of the surface's ends: contact acts only alongside a surface, so the node is
-//! inside as soon as it is over the surface again, however small the increment.
+//! A node that gets behind its surface around one of the surface's ends, or slides off it: contact acts only alongside a surface, so
+//! the node is inside as soon as it is over the surface again, however small the increment, and off the end nothing carries its force.
 //!
-//! The last equilibrium shows which free nodes are past an end and behind it. The increment is then repeated with such a node held
-//! free: if it passes, and the node is over the surface, only that node's penetration ends the path.
+//! The last equilibrium shows which nodes are past an end and behind it, or slide outwards at it. The increment is then repeated with
+//! such a node held free: if forces balance while the node is inside, or nowhere, the end of the surface ends the path.
 
 use super::majors::slope;
 use super::names;
 use std::ops::ControlFlow;
 use stickslip_core::plane::{cross, dot, minus, unit};
 use stickslip_core::{
-    Intervention, Mode, Model, Outcome, RunEnd, SearchMode, Settings, State, Stepper,
-    SurfaceElement, Until,
+    Intervention, Mode, Model, NodeKinematics, Outcome, RunEnd, SearchMode, Settings, State,
+    Stepper, SurfaceElement, Until,
 };
 use stickslip_scene::{sig4, sig6};
 
@@ -31,53 +31,80 @@ struct NearEnd {
     /// Distance past the end along the surface, and behind it (length).
     past: f64,
     depth: f64,
-    /// Whether the node is free, past the end and behind it.
+    /// Whether the node is free, past the end and behind it. Otherwise it slides at the end, or has left the surface in the failed
+    /// iterate.
     is_behind: bool,
+    /// Whether it slides outwards, so close to the end that a smaller increment does not help.
+    slides_off: bool,
 }
 
-/// The surfaces behind whose end a slave node is in the last equilibrium, or at whose end it slides there: so close to it that a
-/// smaller increment does not help, or it has left the surface in the failed iterate.
+/// The surfaces behind whose end a slave node is in the last equilibrium, or at whose end it slides there.
 pub fn ending(model: &Model, state: &State) -> Vec<usize> {
-    let leaves = |found: &NearEnd| {
-        let [before, now] = [&state.start.nodes, &state.nodes].map(|nodes| &nodes[found.slave]);
-        let spot = before.spot.filter(|_| before.mode == Mode::Sliding);
-        let leaves = now.spot.is_none() || found.past > -DEEP * model.length;
-        leaves && spot.is_some_and(|spot| spot.surface == found.surface)
-    };
-    let mut found = near_ends(model, state);
-    found.retain(|found| found.is_behind || leaves(found));
+    let found = near_ends(model, state);
     let mut surfaces: Vec<usize> = found.iter().map(|found| found.surface).collect();
     surfaces.sort_unstable();
     surfaces.dedup();
     surfaces
 }
 
-/// Describes the node whose way around the end of its surface ends the path. `None` if there is none, or if interrupted. The
-/// stepper's final state is unspecified.
-pub fn passed_end(stepper: &mut Stepper, state: &State, stop: &dyn Fn() -> bool) -> Option<String> {
+/// Describes the node whose way around or off the end of its surface ends the path, and whether it then is inside the body. `None`
+/// if there is none, or if interrupted. The stepper's final state is unspecified.
+pub fn passed_end(
+    stepper: &mut Stepper,
+    state: &State,
+    is_behind: bool,
+    stop: &dyn Fn() -> bool,
+) -> Option<(String, bool)> {
     let model = stepper.model().clone();
-    let mut all = near_ends(&model, state);
-    all.retain(|found| found.is_behind);
-    all.sort_by(|a, b| a.past.total_cmp(&b.past));
-    let near = all.into_iter().take(MOST_NODES);
-    let NearEnd {
-        slave,
-        surface,
-        at: [x, y],
-        depth,
-        ..
-    } = near
-        .into_iter()
-        .find(|found| enters(stepper, state, found, stop))?;
-    let (name, on) = (names::slave(&model, slave), &model.surfaces[surface].name);
-    let [x, y, depth] = [x, y, depth].map(sig4);
-    Some(format!(
-        "limit load: beyond load {}, {name} gets behind surface {on} around its end at ({x}, {y}), by {depth} (held free, it is inside the body when forces balance): extend the surface around this end",
-        sig6(state.start.load_factor)
-    ))
+    let mut near = near_ends(&model, state);
+    near.retain(|found| match is_behind {
+        true => found.is_behind,
+        false => found.slides_off,
+    });
+    near.sort_by(|a, b| a.past.total_cmp(&b.past));
+    near.truncate(MOST_NODES);
+    let mut lost = None;
+    for found in near {
+        let is_inside = enters(stepper, state, &found, stop)?;
+        if is_inside {
+            return Some((found.words(&model, state, true), true));
+        }
+        if !is_behind {
+            lost.get_or_insert((found.words(&model, state, false), false));
+        }
+    }
+    lost
 }
 
-/// The nodes near an end of a surface that they can touch, in the last equilibrium.
+impl NearEnd {
+    fn words(&self, model: &Model, state: &State, is_inside: bool) -> String {
+        let (name, on) = (
+            names::slave(model, self.slave),
+            &model.surfaces[self.surface].name,
+        );
+        let ([x, y], load) = (self.at.map(sig4), sig6(state.start.load_factor));
+        let does = if self.is_behind {
+            format!(
+                "gets behind surface {on} around its end at ({x}, {y}), by {}",
+                sig4(self.depth)
+            )
+        } else {
+            format!(
+                "slides off the end of surface {on} at ({x}, {y}), where it transmits F_n = {}",
+                sig4(state.start.nodes[self.slave].f_n)
+            )
+        };
+        let held = match is_inside {
+            true => "it is inside the body when forces balance",
+            false => "no equilibrium was found",
+        };
+        format!(
+            "limit load: beyond load {load}, {name} {does} (held free, {held}): extend the surface around this end"
+        )
+    }
+}
+
+/// The nodes that are behind an end of a surface that they can touch in the last equilibrium, or slide at that end.
 fn near_ends(model: &Model, state: &State) -> Vec<NearEnd> {
     let places = model.places(&state.start.u);
     let mut found = Vec::new();
@@ -88,14 +115,21 @@ fn near_ends(model: &Model, state: &State) -> Vec<NearEnd> {
                 // The outward normal is on the right of the walk.
                 let (past, depth) = (end.sign * dot(end.walk, to), cross(end.walk, to));
                 let is_free = node.mode == Mode::Free && node.spot.is_none();
-                if past.abs() < NEAR * model.length {
+                let slides = node.mode == Mode::Sliding
+                    && node.spot.is_some_and(|spot| spot.surface == surface);
+                let is_behind = is_free && past >= 0.0 && depth > DEEP * model.length;
+                let is_at_end = past > -DEEP * model.length;
+                let leaves = slides && (is_at_end || state.nodes[slave].spot.is_none());
+                if past.abs() < NEAR * model.length && (is_behind || leaves) {
                     found.push(NearEnd {
                         slave,
                         surface,
                         at: places[end.node],
                         past,
                         depth,
-                        is_behind: is_free && past >= 0.0 && depth > DEEP * model.length,
+                        is_behind,
+                        // A slip is positive against the walk.
+                        slides_off: slides && is_at_end && node.sign * end.sign < 0.0,
                     });
                 }
             }
@@ -125,8 +159,14 @@ fn ends(model: &Model, surface: usize, places: &[[f64; 2]]) -> Option<[SurfaceEn
     (start != end && !chain.endless).then(|| [end_at(start, first, -1.0), end_at(end, second, 1.0)])
 }
 
-/// Whether forces balance during the increment, with the node held free, while the node is behind the surface.
-fn enters(stepper: &mut Stepper, state: &State, found: &NearEnd, stop: &dyn Fn() -> bool) -> bool {
+/// Whether forces balance during the increment, with the node held free, while the node is behind the surface. `None` if interrupted,
+/// or if another state is found.
+fn enters(
+    stepper: &mut Stepper,
+    state: &State,
+    found: &NearEnd,
+    stop: &dyn Fn() -> bool,
+) -> Option<bool> {
     let (slave, mode) = (found.slave, Mode::Free);
     let settings = Settings {
         search: SearchMode::Off,
@@ -143,7 +183,7 @@ fn enters(stepper: &mut Stepper, state: &State, found: &NearEnd, stop: &dyn Fn()
         .iter()
         .any(|change| stepper.intervene(change).is_err())
     {
-        return false;
+        return None;
     }
     let until = Until::end().minors(MOST_MINORS).interrupted_by(stop);
     let end = stepper.drive(until, |stepper| {
@@ -158,11 +198,16 @@ fn enters(stepper: &mut Stepper, state: &State, found: &NearEnd, stop: &dyn Fn()
         };
         let spot = stepper.state().nodes[slave].spot;
         let over = spot.is_some_and(|spot| spot.surface == found.surface);
-        if balanced && over {
+        let is_inside = |over: NodeKinematics| over.gap < 0.0;
+        if balanced && over && stepper.kinematics(slave).is_some_and(is_inside) {
             ControlFlow::Break(true)
         } else {
             ControlFlow::Continue(())
         }
     });
-    end == RunEnd::Stopped(true)
+    match end {
+        RunEnd::Stopped(is_inside) => is_inside.then_some(true),
+        RunEnd::Failed(_) | RunEnd::Spent => Some(false),
+        RunEnd::Finished | RunEnd::Interrupted => None,
+    }
 }
