@@ -44,7 +44,7 @@ pub struct AssemblyMotion<'a> {
     pub step: &'a [f64],
     /// Displacements at the last accepted increment.
     pub before: &'a [f64],
-    /// History variables at that increment: [`history_len`] numbers, all zero before the first.
+    /// History variables at that increment: [`super::assembly::history_len`] numbers, all zero before the first.
     pub history: &'a [f64],
 }
 

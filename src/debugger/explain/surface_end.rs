@@ -65,12 +65,14 @@ pub fn passed_end(
     near.truncate(MOST_NODES);
     let mut lost = None;
     for found in near {
-        let is_inside = enters(stepper, state, &found, stop)?;
-        if is_inside {
-            return Some((found.words(&model, state, true), true));
-        }
-        if !is_behind {
-            lost.get_or_insert((found.words(&model, state, false), false));
+        match enters(stepper, state, &found, stop) {
+            Some(true) => return Some((found.words(&model, state, true), true)),
+            Some(false) if !is_behind => {
+                lost.get_or_insert((found.words(&model, state, false), false));
+            }
+            // Another state exists: this end is not what ends the path.
+            None if !is_behind => return None,
+            _ => {}
         }
     }
     lost
