@@ -334,27 +334,3 @@ fn changes_of_the_scene_are_tried_from_its_start() {
         assert_eq!(code, 0, "{reason}");
     }
 }
-
-/// Without the turning of the contact geometry in the tangent, the major iterations diverge however small the increment: the search
-/// takes it in, and finds the state that `geometry: consistent` finds at once.
-#[test]
-fn increments_that_diverge_with_frozen_geometry_are_found_with_the_consistent_one() {
-    let file = "tests/findings/frozen-geometry-diverges.ron";
-    let (code, text, _) = told(&[file]);
-    assert_eq!(code, 0, "{text}");
-    assert!(text.contains("found with geometry: consistent"), "{text}");
-    let (_, consistent, _) = told(&[file, "--set", "settings.geometry=consistent"]);
-    let ([found], [wanted]) = (&forces(&text)[..], &forces(&consistent)[..]) else {
-        panic!("one node: {text} {consistent}");
-    };
-    assert!((found - wanted).abs() < 1e-4 * wanted, "{found} {wanted}");
-}
-
-/// F_n of the closed nodes at the end of a run, from its report.
-fn forces(report: &str) -> Vec<f64> {
-    let of = |line: &str| match line.split_whitespace().collect::<Vec<_>>()[..] {
-        [_, "sliding" | "fixed", _, f_n, _] => f_n.parse().ok(),
-        _ => None,
-    };
-    report.lines().filter_map(of).collect()
-}

@@ -14,7 +14,6 @@ impl Recovery for Fallback {
             Fallback::Section => "section",
             Fallback::Consistent => "consistent",
             Fallback::Start => "start",
-            Fallback::Geometry => "geometry",
             Fallback::Held => "held",
             Fallback::Deeper => "deeper",
             Fallback::Release => "motion",

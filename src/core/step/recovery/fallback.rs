@@ -11,10 +11,8 @@
 //!
 //! If `settings.search` allows it, the search continues:
 //!
-//! 5. with the turning of the contact geometry in the tangent ([`Geometry::Consistent`]), before sliding is held back: without it
-//!    the major iterations may diverge, however small the increment; it stays in force in the following ones;
-//! 6. with parts down to 1/4096 of the least increment;
-//! 7. with the loads of the last equilibrium, from which a damped motion leads to the next one (`damped`), which is
+//! 5. with parts down to 1/4096 of the least increment;
+//! 6. with the loads of the last equilibrium, from which a damped motion leads to the next one (`damped`), which is
 //!    marked.
 //!
 //! Before all others, if a body is unsupported at the start of the history, nodes that touch without a gap start fixed.
@@ -22,7 +20,7 @@
 //! Each fallback is cut into halves as before and stays in force until a part of the increment is accepted. If none helps, the
 //! last half is repeated without a fallback, so that the failed state matches the reported failure.
 
-use crate::model::{Geometry, Touch};
+use crate::model::Touch;
 use crate::{BoundUpdate, Settings, SubIncrement};
 use serde::{Deserialize, Serialize};
 
@@ -42,8 +40,6 @@ crate::words! {
         Consistent "t_max: consistent",
         /// Touching nodes are held at the projections of their start positions.
         Start "touch: start",
-        /// The tangent follows the contact geometry.
-        Geometry "geometry: consistent",
         /// Sliding is held back ([`super::proximal`]).
         Held "held-back sliding",
         /// Parts smaller than the least increment.
@@ -69,19 +65,21 @@ impl Fallback {
     pub(in crate::step) fn searches(self) -> bool {
         matches!(
             self,
-            Fallback::Touching | Fallback::Geometry | Fallback::Deeper | Fallback::Release
+            Fallback::Touching | Fallback::Deeper | Fallback::Release
         )
     }
 
     /// The settings in force with this fallback.
     pub(in crate::step) fn in_force(self, mut settings: Settings) -> Settings {
         match self {
-            Fallback::Touching | Fallback::Section | Fallback::Held | Fallback::Back => {}
+            Fallback::Touching
+            | Fallback::Section
+            | Fallback::Held
+            | Fallback::Deeper
+            | Fallback::Release
+            | Fallback::Back => {}
             Fallback::Consistent => settings.t_max = BoundUpdate::Consistent,
             Fallback::Start => settings.touch = Touch::Start,
-            Fallback::Geometry | Fallback::Deeper | Fallback::Release => {
-                settings.geometry = Geometry::Consistent;
-            }
         }
         settings
     }

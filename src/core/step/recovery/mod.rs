@@ -56,12 +56,11 @@ const ALONG: [&dyn Recovery; 3] = [
     &path_corner::LastCornerRestart,
 ];
 const LOADED: [&dyn Recovery; 3] = [&cut::IncrementCut, &whole::WholeIncrement, &damped::Release];
-const FALLBACKS: [&dyn Recovery; 9] = [
+const FALLBACKS: [&dyn Recovery; 8] = [
     &Fallback::Touching,
     &Fallback::Section,
     &Fallback::Consistent,
     &Fallback::Start,
-    &Fallback::Geometry,
     &Fallback::Held,
     &Fallback::Deeper,
     &Fallback::Release,
