@@ -389,7 +389,7 @@ impl Source for Bodies {
     }
 
     fn rebalance(&mut self, at: &LinearisationPoint<'_>) {
-        self.system.rebalance(&self.model, at);
+        self.system.balance(&self.model, at);
     }
 
     fn accept(&mut self, u: &[f64], before: &[f64], history: &mut [f64]) {

@@ -134,11 +134,6 @@ impl System {
         add_drag(model, at, &self.sizes, &mut self.external);
     }
 
-    /// Recomputes the residual after interface forces have changed; geometry and stiffness stay.
-    pub fn rebalance(&mut self, model: &Model, at: &LinearisationPoint<'_>) {
-        self.balance(model, at);
-    }
-
     /// Computes the internal forces, unless the assembly did, and at the same time their round-off and that of lengths that should
     /// vanish: the machine precision times |K| |u|. It belongs to a linearisation, independent of later changes of forces and
     /// loads.
