@@ -19,11 +19,11 @@ pub(super) struct Substitution {
     rest: Range<usize>,
     /// First column of the second part, and of the rest.
     columns: [usize; 2],
-    rooms: [Workspace; 2],
+    sums: [PartialSums; 2],
 }
 
 /// Workspace of a part.
-struct Workspace {
+struct PartialSums {
     /// Contribution of a supernode's columns to the rows below it.
     below: Vec<f64>,
     /// Contribution of the part to the rows of the rest.
@@ -49,105 +49,114 @@ impl Substitution {
         let parts = parts.filter(|parts| parts.iter().map(size).sum::<usize>() >= LARGE);
         let parts = parts.unwrap_or_default();
         let rest = parts[1].end..l.nodes.len();
-        let first = |s: usize| l.nodes.get(s).map_or(0, |node| node.columns.start);
+        let count = l.nodes.last().map_or(0, |node| node.columns.end);
+        let first = |s: usize| l.nodes.get(s).map_or(count, |node| node.columns.start);
         let columns = [first(parts[1].start), first(rest.start)];
         let below = l.nodes.iter().map(|node| node.height() - node.width());
         let below = below.max().unwrap_or(0);
-        let later = l.nodes.last().map_or(0, |node| node.columns.end) - columns[1];
-        let rooms = parts.each_ref().map(|part| Workspace {
+        let later = if columns[1] > 0 {
+            count - columns[1]
+        } else {
+            0
+        };
+        let sums = [(); 2].map(|()| PartialSums {
             below: vec![0.0; below],
-            later: vec![0.0; if part.is_empty() { 0 } else { later }],
+            later: vec![0.0; later],
         });
         Substitution {
             parts,
             rest,
             columns,
-            rooms,
+            sums,
         }
+    }
+
+    /// Whether two parts run in parallel.
+    #[cfg(test)]
+    pub fn is_split(&self) -> bool {
+        self.columns[1] > 0
     }
 
     /// Forward substitution L y = b in the first `count` columns, which also updates the later rows.
     pub fn forward(
         &mut self,
-        (l, values): (&Supernodes, &[f64]),
+        l: (&Supernodes, &[f64]),
         b: &mut [f64],
         count: usize,
         executor: &dyn Executor,
     ) {
-        let [second, rest] = self.columns;
-        let part = |nodes: &Range<usize>, first: usize| Part {
-            l,
-            values,
-            nodes: nodes.clone(),
-            first,
-            rest,
-            count,
-        };
-        let (own, later) = b.split_at_mut(rest);
-        let (left, right) = own.split_at_mut(second);
-        let [room, other] = &mut self.rooms;
-        if rest > 0 {
-            executor.join(
-                &mut || part(&self.parts[0], 0).forward(left, room),
-                &mut || part(&self.parts[1], second).forward(right, other),
-            );
+        let [first, second, rest] = self.parts(l, count);
+        let (own, later) = b.split_at_mut(rest.first);
+        let (left, right) = own.split_at_mut(second.first);
+        let [sums, others] = &mut self.sums;
+        if rest.first > 0 {
+            executor.join(&mut || first.forward(left, sums), &mut || {
+                second.forward(right, others)
+            });
         }
-        for ((b, left), right) in later.iter_mut().zip(&room.later).zip(&other.later) {
+        for ((b, left), right) in later.iter_mut().zip(&sums.later).zip(&others.later) {
             *b -= left + right;
         }
-        part(&self.rest, rest).forward(later, room);
+        rest.forward(later, sums);
     }
 
     /// Back substitution Lᵀ u = y in the first `count` columns, with known u in the others.
     pub fn backward(
         &mut self,
-        (l, values): (&Supernodes, &[f64]),
+        l: (&Supernodes, &[f64]),
         y: &mut [f64],
         count: usize,
         executor: &dyn Executor,
     ) {
+        let [first, second, rest] = self.parts(l, count);
+        let (own, later) = y.split_at_mut(rest.first);
+        let (left, right) = own.split_at_mut(second.first);
+        let [sums, others] = &mut self.sums;
+        rest.backward(later, &[], &mut sums.below);
+        if rest.first > 0 {
+            executor.join(
+                &mut || first.backward(left, later, &mut sums.below),
+                &mut || second.backward(right, later, &mut others.below),
+            );
+        }
+    }
+
+    /// The two parts, and the rest.
+    fn parts<'a>(&self, (l, values): (&'a Supernodes, &'a [f64]), count: usize) -> [Part<'a>; 3] {
         let [second, rest] = self.columns;
-        let part = |nodes: &Range<usize>, first: usize| Part {
+        let [one, other] = self.parts.clone();
+        let all = [(one, 0), (other, second), (self.rest.clone(), rest)];
+        all.map(|(nodes, first)| Part {
             l,
             values,
-            nodes: nodes.clone(),
+            nodes,
             first,
             rest,
             count,
-        };
-        let (own, later) = y.split_at_mut(rest);
-        let (left, right) = own.split_at_mut(second);
-        let [room, other] = &mut self.rooms;
-        part(&self.rest, rest).backward(later, &[], &mut room.below);
-        if rest > 0 {
-            executor.join(
-                &mut || part(&self.parts[0], 0).backward(left, later, &mut room.below),
-                &mut || part(&self.parts[1], second).backward(right, later, &mut other.below),
-            );
-        }
+        })
     }
 }
 
 impl Part<'_> {
-    fn forward(self, own: &mut [f64], room: &mut Workspace) {
-        room.later.fill(0.0);
+    fn forward(&self, own: &mut [f64], sums: &mut PartialSums) {
+        sums.later.fill(0.0);
         vectorise(
             #[inline(always)]
-            || self.substitute(own, room),
+            || self.substitute(own, sums),
         );
     }
 
     #[inline(always)]
-    fn substitute(self, own: &mut [f64], room: &mut Workspace) {
+    fn substitute(&self, own: &mut [f64], sums: &mut PartialSums) {
         let end = self.first + own.len();
-        for s in self.nodes {
+        for s in self.nodes.clone() {
             let (node, rows) = (&self.l.nodes[s], self.l.rows(s));
             let (start, width) = (node.columns.start - self.first, node.width());
             let columns = self.count.saturating_sub(node.columns.start).min(width);
             if columns == 0 {
                 break;
             }
-            let below = &mut room.below[..rows.len()];
+            let below = &mut sums.below[..rows.len()];
             below.fill(0.0);
             let b = &mut own[start..start + width];
             for k in 0..columns {
@@ -160,12 +169,12 @@ impl Part<'_> {
                 own[row as usize - self.first] -= below;
             }
             for (&row, below) in rows.iter().zip(&*below).skip(inside) {
-                room.later[row as usize - self.rest] += below;
+                sums.later[row as usize - self.rest] += below;
             }
         }
     }
 
-    fn backward(self, own: &mut [f64], later: &[f64], below: &mut [f64]) {
+    fn backward(&self, own: &mut [f64], later: &[f64], below: &mut [f64]) {
         vectorise(
             #[inline(always)]
             || self.substitute_back(own, later, below),
@@ -173,9 +182,9 @@ impl Part<'_> {
     }
 
     #[inline(always)]
-    fn substitute_back(self, own: &mut [f64], later: &[f64], below: &mut [f64]) {
+    fn substitute_back(&self, own: &mut [f64], later: &[f64], below: &mut [f64]) {
         let end = self.first + own.len();
-        for s in self.nodes.rev() {
+        for s in self.nodes.clone().rev() {
             let (node, rows) = (&self.l.nodes[s], self.l.rows(s));
             let (start, width) = (node.columns.start - self.first, node.width());
             let columns = self.count.saturating_sub(node.columns.start).min(width);

@@ -408,38 +408,71 @@ mod tests {
         }
     }
 
-    #[test]
-    fn factors_have_the_same_bits_on_one_thread_and_on_many() {
-        // Large enough for a dissection.
-        let side = 110;
-        let n = side * side;
-        let steps = [0, 1, side - 1, side, side + 1, 2 * side];
+    /// A matrix that is large enough for a dissection, with the values and the positions of its unknowns. Rows of the grid from
+    /// `apart` on are not coupled to earlier ones.
+    fn large_grid(apart: usize) -> (Arc<Pattern>, Vec<f64>, Vec<[f64; 2]>) {
+        let n = SIDE * SIDE;
+        let steps = [0, 1, SIDE - 1, SIDE, SIDE + 1, 2 * SIDE];
         let entries = (0..n).flat_map(|i| steps.map(|step| (i, i + step)));
-        let entries = entries.filter(|&(_, j)| j < n);
+        let is_second = |i: usize| i >= apart * SIDE;
+        let entries = entries.filter(|&(i, j)| j < n && is_second(i) == is_second(j));
         let pattern = Arc::new(Pattern::new(n, entries).unwrap());
         let value = |(k, (i, j)): (usize, (usize, usize))| {
             let part = (k as f64).sin();
             if i == j { 20.0 + part } else { part }
         };
-        let values: Vec<f64> = pattern.iter().enumerate().map(value).collect();
-        let last: Vec<usize> = (0..side).collect();
-        let positions: Vec<[f64; 2]> = (0..n)
-            .map(|i| [i % side, i / side].map(|k| k as f64))
-            .collect();
+        let values = pattern.iter().enumerate().map(value).collect();
+        let positions = (0..n).map(|i| [i % SIDE, i / SIDE].map(|k| k as f64));
+        let positions = positions.collect();
+        (pattern, values, positions)
+    }
+
+    const SIDE: usize = 110;
+
+    #[test]
+    fn factors_and_solutions_have_the_same_bits_on_one_thread_and_on_many() {
+        let (pattern, values, positions) = large_grid(0);
+        let (n, last) = (pattern.size(), (0..SIDE).collect::<Vec<usize>>());
         let b: Vec<f64> = (0..n).map(|i| (i as f64).cos()).collect();
         let sizes = [&positions[..], &[]].map(|positions| {
             let mut factors = SymmetricFactors::new(pattern.clone(), &last, positions).unwrap();
-            assert!(factors.tree.parts().is_some());
+            assert!(factors.tree.parts().is_some() && factors.substitution.is_split());
             let mut solve = |executor: &dyn Executor| {
-                let mut x = vec![0.0; n];
+                let (mut x, mut load, mut recovered) =
+                    (vec![0.0; n], vec![0.0; SIDE], vec![0.0; n]);
                 factors.factor(&values, 0.5, executor).unwrap();
                 factors.solve(&b, &mut x, executor).unwrap();
-                (factors.factors.clone(), x)
+                factors.condense(&b, &mut load, executor);
+                let known = &x[..SIDE];
+                factors
+                    .recover(&b, known, &mut recovered, executor)
+                    .unwrap();
+                let apart = x.iter().zip(&recovered).map(|(x, y)| x - y);
+                assert!(largest(apart) < 1e-14);
+                // S x_c = r̃.
+                let mut condensed = vec![0.0; SIDE * SIDE];
+                factors.condensed(&mut condensed);
+                let condensed = DMatrix::from_vec(SIDE, SIDE, condensed);
+                let error =
+                    condensed * DVector::from_row_slice(known) - DVector::from_row_slice(&load);
+                assert!(error.amax() < 1e-13, "{}", error.amax());
+                (factors.factors.clone(), x, load)
             };
             assert!(solve(&SequentialExecutor) == solve(&Threads));
             factors.factors.len()
         });
         assert!(sizes[0] < sizes[1], "a dissection fills less: {sizes:?}");
+    }
+
+    #[test]
+    fn two_uncoupled_bodies_without_a_common_rest_are_solved() {
+        let (pattern, values, positions) = large_grid(SIDE / 2);
+        let n = pattern.size();
+        let mut factors = SymmetricFactors::new(pattern, &[], &positions).unwrap();
+        assert!(factors.substitution.is_split());
+        let b: Vec<f64> = (0..n).map(|i| (i as f64).cos()).collect();
+        factors.factor(&values, 0.0, &Threads).unwrap();
+        factors.solve(&b, &mut vec![0.0; n], &Threads).unwrap();
     }
 
     #[test]

@@ -188,7 +188,7 @@ impl Condensation {
 
     /// Number of near unknowns.
     fn size(&self) -> usize {
-        self.far.near().len()
+        self.far.size()
     }
 
     /// Index of an equation among the near unknowns of the interface, if it is one.

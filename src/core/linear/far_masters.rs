@@ -90,9 +90,9 @@ impl FarMasters {
         true
     }
 
-    /// The near unknowns.
-    pub fn near(&self) -> &[usize] {
-        &self.near
+    /// Number of near unknowns.
+    pub fn size(&self) -> usize {
+        self.near.len()
     }
 
     /// Index of an unknown among the near ones, if it is one.

@@ -184,12 +184,19 @@ fn peak(path: &[f64], scale: &Factor) -> f64 {
 
 /// Quantity balanced by the equation of each degree of freedom.
 fn kinds(model: &Model) -> Vec<BalancedQuantity> {
-    let kind = |dof: usize| match model.dofs.node_of(dof) {
-        Some((_, 2)) => BalancedQuantity::Moment,
-        Some(_) => BalancedQuantity::Force,
-        None => BalancedQuantity::Length,
-    };
-    (0..model.dofs.len()).map(kind).collect()
+    let mut kinds = vec![BalancedQuantity::Length; model.dofs.len()];
+    for (&first, &count) in model.dofs.first.iter().zip(&model.dofs.count) {
+        for (component, kind) in kinds[first..first + usize::from(count)]
+            .iter_mut()
+            .enumerate()
+        {
+            *kind = match component {
+                2 => BalancedQuantity::Moment,
+                _ => BalancedQuantity::Force,
+            };
+        }
+    }
+    kinds
 }
 
 /// Order of magnitude of the softest body's overall stiffness: bending stiffness for a beam.

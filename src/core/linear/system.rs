@@ -66,8 +66,6 @@ pub struct System {
     taken: Vec<f64>,
     remembered: Vec<f64>,
     plain: Vec<f64>,
-    /// Whether the stiffness of the last linearisation was computed at an earlier state.
-    stands: bool,
     /// Whether `bodies` have the factors of `stiffness`.
     pub(super) is_factored: bool,
     /// Work done so far.
@@ -140,7 +138,6 @@ impl System {
             taken: Vec::new(),
             remembered: Vec::new(),
             plain: Vec::new(),
-            stands: false,
             is_factored: false,
             done: Work::default(),
             dragged: false,
@@ -257,9 +254,9 @@ impl System {
     /// Computes the internal forces and the stiffness; the stiffness may be one from earlier displacements.
     fn take_stiffness(&mut self, layout: Layout, model: &Model, at: &LinearisationPoint<'_>) {
         let about = at.factored.unwrap_or(at.u);
-        self.stands =
+        let stands =
             at.factored.is_some() && self.taken == about && self.remembered == at.accepted.history;
-        if !self.stands {
+        if !stands {
             self.is_factored = false;
             self.assemble(model, &LinearisationPoint { u: about, ..*at });
             self.taken.clear();
@@ -275,7 +272,7 @@ impl System {
             self.stiffness.copy_from_slice(&self.plain);
         }
         self.resist(model, at);
-        if self.stands {
+        if stands {
             let moved = moved(about, &self.step, at);
             self.assembly.couple(&model.dofs, moved, &mut self.coupling);
         }
@@ -398,6 +395,8 @@ impl System {
     /// Analyses the bodies, unless that is done, while the elements are bound to their pattern.
     fn lay_out_bodies(&mut self, model: &Model) -> Result<(), SolveError> {
         self.taken.clear();
+        // The elements are bound even if the analysis fails.
+        self.layout = None;
         let pattern = match &self.bodies {
             Some(bodies) => bodies.pattern().clone(),
             None => {
@@ -511,8 +510,8 @@ impl System {
             (&mut self.coupling, &self.step),
             model,
         );
-        let mut bodies = self.bodies.as_mut();
-        let mut bodies = bodies.take_if(|_| self.layout == Some(Layout::Bodies));
+        let bodies = self.bodies.as_mut();
+        let mut bodies = bodies.filter(|_| self.layout == Some(Layout::Bodies));
         for (interface, node) in self.interfaces.iter_mut().zip(at.contacts) {
             if !interface.point.is_empty() {
                 continue;

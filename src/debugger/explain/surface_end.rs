@@ -162,7 +162,7 @@ fn ends(model: &Model, surface: usize, places: &[[f64; 2]]) -> Option<[SurfaceEn
 }
 
 /// Whether forces balance during the increment, with the node held free, while the node is behind the surface. `None` if interrupted,
-/// or if another state is found.
+/// if another state is found, or if the budget ends.
 fn enters(
     stepper: &mut Stepper,
     state: &State,
@@ -209,7 +209,7 @@ fn enters(
     });
     match end {
         RunEnd::Stopped(is_inside) => is_inside.then_some(true),
-        RunEnd::Failed(_) | RunEnd::Spent => Some(false),
-        RunEnd::Finished | RunEnd::Interrupted => None,
+        RunEnd::Failed(_) => Some(false),
+        RunEnd::Finished | RunEnd::Spent | RunEnd::Interrupted => None,
     }
 }
