@@ -174,6 +174,36 @@ fn a_surface_that_most_of_its_nodes_are_behind_is_the_wrong_way_round_and_revers
 }
 
 #[test]
+fn after_too_many_cuts_the_remedies_are_those_of_the_last_failure_without_smaller_increments() {
+    let model = scene("osc-border", &[]).model;
+    let state = Stepper::new(Arc::new(model.clone())).state().clone();
+    let last = Failure::MajorLimit {
+        limit: 60,
+        relative: 0.1,
+        interface: 0.1,
+    };
+    let cut = Failure::CutTooOften {
+        slave: 0,
+        cuts: 300,
+        last: Box::new(last.clone()),
+    };
+    let typed = |failure: &Failure| -> Vec<String> {
+        let advised = advice(&model, &state, failure, None).into_iter();
+        let remedies = advised.filter_map(|advice| match advice {
+            Advice::Remedy(remedy) => Some(remedy.how.typed()),
+            Advice::ByHand(_) => None,
+        });
+        remedies.collect()
+    };
+    let (once, often) = (typed(&last), typed(&cut));
+    let smaller = |how: &&String| how.starts_with(":increment");
+    assert!(once.iter().any(|how| smaller(&how)), "{once:?}");
+    assert!(often.contains(&":set settings.geometry consistent".to_owned()));
+    let rest: Vec<_> = once.iter().filter(|how| !smaller(how)).collect();
+    assert_eq!(often.iter().collect::<Vec<_>>(), rest);
+}
+
+#[test]
 fn residuals_that_do_not_fall_name_the_node_and_what_changes_instead_of_a_rate() {
     let model = scene("osc-two6", &[]).model;
     let state = Stepper::new(Arc::new(model.clone())).state().clone();

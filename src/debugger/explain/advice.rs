@@ -81,14 +81,17 @@ pub fn advice(model: &Model, state: &State, failure: &Failure, spec: Option<&Spe
 
 /// Whether a finer mesh can help against a failure.
 fn refines(failure: &Failure) -> bool {
-    matches!(
-        failure,
-        Failure::MajorCycle(_)
-            | Failure::MajorLimit { .. }
-            | Failure::Diverged { .. }
-            | Failure::Inverted(_)
-            | Failure::Refused(_)
-    )
+    match failure {
+        Failure::CutTooOften { last, .. } => refines(last),
+        failure => matches!(
+            failure,
+            Failure::MajorCycle(_)
+                | Failure::MajorLimit { .. }
+                | Failure::Diverged { .. }
+                | Failure::Inverted(_)
+                | Failure::Refused(_)
+        ),
+    }
 }
 
 /// What can be tried, in order of preference; those without effect are removed later.
@@ -147,6 +150,7 @@ fn kinds(state: &State, failure: &Failure) -> Vec<RemedyKind> {
             add(!climbs, &[LADDER]);
         }
         Failure::Singular(Singular::Unexplained) | Failure::Diverged { .. } => {
+            add(frozen, &[CONSISTENT_GEOMETRY]);
             add(searches, &[SEARCH]);
             add(true, parts);
         }
@@ -164,6 +168,11 @@ fn kinds(state: &State, failure: &Failure) -> Vec<RemedyKind> {
             add(true, parts);
             add(true, &[TOUCH_AT_START, CONSISTENT_LIMIT]);
         }
+        // Its attempts have cut the increment and searched.
+        Failure::CutTooOften { last, .. } => {
+            all = kinds(state, last);
+            all.retain(|kind| *kind != SEARCH && !matches!(kind, RemedyKind::Part(_)));
+        }
         Failure::BranchJump { .. } => add(
             true,
             &[
@@ -177,7 +186,6 @@ fn kinds(state: &State, failure: &Failure) -> Vec<RemedyKind> {
         | Failure::NoRest { .. }
         | Failure::RoundOff { .. }
         | Failure::Inverted(_)
-        | Failure::CutTooOften { .. }
         | Failure::OverConstrained { .. } => {}
         // An attached solver has its own method and reports its own remedies.
         Failure::Reported { .. } => {}
