@@ -65,11 +65,17 @@ impl DenseFactors {
 
     /// Factors the matrix with these values in column-major order.
     pub fn factor(&mut self, values: &[f64]) {
+        self.factor_part(values, self.n);
+    }
+
+    /// The same with the first rows and columns of a matrix that has `rows` rows.
+    pub fn factor_part(&mut self, values: &[f64], rows: usize) {
         let n = self.n;
-        self.values.copy_from_slice(values);
         self.row_scale.fill(0.0);
-        for column in values.chunks_exact(n.max(1)) {
-            for (scale, value) in self.row_scale.iter_mut().zip(column) {
+        let columns = self.values.chunks_exact_mut(n.max(1));
+        for (own, column) in columns.zip(values.chunks_exact(rows.max(1))) {
+            for ((own, scale), value) in own.iter_mut().zip(&mut self.row_scale).zip(column) {
+                *own = *value;
                 *scale = scale.max(value.abs());
             }
         }

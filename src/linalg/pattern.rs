@@ -161,42 +161,28 @@ impl Pattern {
         }
     }
 
-    /// y = A x for a symmetric A with this upper half.
-    pub fn multiply_half(&self, values: &[f64], x: &[f64], y: &mut [f64]) {
-        self.add_up(values, x, y, true, |value, x| value * x);
-    }
-
     /// y = |A| |x|: the sum of the terms' magnitudes in a product, which is the scale of its round-off. With `half`, this is the
     /// upper half of a symmetric A.
     pub fn multiply_abs(&self, values: &[f64], x: &[f64], y: &mut [f64], half: bool) {
-        self.add_up(values, x, y, half, |value, x| (value * x).abs());
-    }
-
-    fn add_up(
-        &self,
-        values: &[f64],
-        x: &[f64],
-        y: &mut [f64],
-        half: bool,
-        term: impl Fn(f64, f64) -> f64,
-    ) {
         y.fill(0.0);
         for (col, &xc) in x.iter().enumerate() {
             let range = self.column(col);
             let (values, rows) = (&values[range.clone()], &self.row_idx[range]);
             for (&value, &row) in values.iter().zip(rows) {
-                y[row as usize] += term(value, xc);
+                y[row as usize] += (value * xc).abs();
             }
             if half {
-                let of_others = |value, row| if row == col { 0.0 } else { term(value, x[row]) };
-                y[col] += sum_of(values, rows, of_others);
+                y[col] += sum_of(values, rows, |value, row| match row == col {
+                    true => 0.0,
+                    false => (value * x[row]).abs(),
+                });
             }
         }
     }
 }
 
 /// Sum of the terms of values and their rows, in four parts that do not wait for each other.
-fn sum_of(values: &[f64], rows: &[u32], term: impl Fn(f64, usize) -> f64) -> f64 {
+pub(super) fn sum_of(values: &[f64], rows: &[u32], term: impl Fn(f64, usize) -> f64) -> f64 {
     const PARTS: usize = 4;
     let mut sums = [0.0; PARTS];
     let (values, rows) = (values.chunks_exact(PARTS), rows.chunks_exact(PARTS));

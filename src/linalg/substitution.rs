@@ -1,164 +1,249 @@
-//! Forward and back substitution with the supernodes of L.
+//! Forward and back substitution with the supernodes of L, and products with the matrix, along the elimination tree.
 //!
-//! The two parts of the tree that do not change each other run in parallel if they are large. What each of them subtracts from the
-//! rows after both is summed separately, so the bits do not depend on the executor.
+//! Branches that do not change each other run in parallel if they are large. What a branch adds to the rows after it is summed
+//! separately, so the bits do not depend on the executor.
 
 use super::executor::Executor;
+use super::pattern::sum_of;
 use super::registers::vectorise;
-use super::subtrees::Subtree;
+use super::subtrees::{LowerHalf, Subtree};
 use super::supernodes::Supernodes;
 use std::ops::Range;
 
-/// Parts that have fewer values together run in sequence.
+/// A branch is not split if its halves have fewer values together.
 const LARGE: usize = 200_000;
 
-/// How substitutions are split, and their workspace.
+/// The elimination tree, with workspace.
 pub(super) struct Substitution {
-    /// The supernodes of the two parts, which may be empty, and those after them.
-    parts: [Range<usize>; 2],
-    rest: Range<usize>,
-    /// First column of the second part, and of the rest.
-    columns: [usize; 2],
-    sums: [PartialSums; 2],
+    root: Branch,
+    /// By row: its place among the later rows of the branches before it.
+    place: Vec<u32>,
 }
 
-/// Workspace of a part.
-struct PartialSums {
+/// Consecutive supernodes: two halves that do not change each other, if it is split, and a top that follows both.
+struct Branch {
+    halves: Option<Box<[Branch; 2]>>,
+    nodes: Range<usize>,
+    /// The columns of the top, and the first one of the branch.
+    columns: Range<usize>,
+    first: usize,
     /// Contribution of a supernode's columns to the rows below it.
     below: Vec<f64>,
-    /// Contribution of the part to the rows of the rest.
+    /// Values of the later rows that the branch can change: those of the tops around it, from the root on.
     later: Vec<f64>,
 }
 
-/// Some consecutive supernodes of L.
-struct Part<'a> {
+/// The top of a branch in a pass.
+struct Top<'a> {
+    nodes: Range<usize>,
+    columns: Range<usize>,
+    /// Values of its rows.
+    own: &'a mut [f64],
+    later: &'a mut [f64],
+    below: &'a mut [f64],
+}
+
+/// Factors whose columns from `count` on are left out.
+#[derive(Clone, Copy)]
+struct Columns<'a> {
     l: &'a Supernodes,
     values: &'a [f64],
-    nodes: Range<usize>,
-    /// First column of the part and of the rest.
-    first: usize,
-    rest: usize,
-    /// The columns from this one on are left out.
+    place: &'a [u32],
     count: usize,
 }
 
+type Job<'a> = dyn Fn(Top<'_>) + Sync + 'a;
+
 impl Substitution {
     pub fn new(l: &Supernodes, tree: &Subtree) -> Self {
-        let parts = tree.parts();
-        let size = |nodes: &Range<usize>| l.values(nodes).len();
-        let parts = parts.filter(|parts| parts.iter().map(size).sum::<usize>() >= LARGE);
-        let parts = parts.unwrap_or_default();
-        let rest = parts[1].end..l.nodes.len();
         let count = l.nodes.last().map_or(0, |node| node.columns.end);
-        let first = |s: usize| l.nodes.get(s).map_or(count, |node| node.columns.start);
-        let columns = [first(parts[1].start), first(rest.start)];
-        let below = l.nodes.iter().map(|node| node.height() - node.width());
-        let below = below.max().unwrap_or(0);
-        let later = if columns[1] > 0 {
-            count - columns[1]
-        } else {
-            0
-        };
-        let sums = [(); 2].map(|()| PartialSums {
-            below: vec![0.0; below],
-            later: vec![0.0; later],
-        });
+        let mut place = vec![0; count];
         Substitution {
-            parts,
-            rest,
-            columns,
-            sums,
+            root: Branch::new(l, tree, 0, &mut place),
+            place,
         }
     }
 
-    /// Whether two parts run in parallel.
+    /// Whether branches of a branch run in parallel.
     #[cfg(test)]
-    pub fn is_split(&self) -> bool {
-        self.columns[1] > 0
+    pub fn is_split_twice(&self) -> bool {
+        let halves = self.root.halves.iter().flat_map(|halves| halves.iter());
+        halves.filter(|half| half.halves.is_some()).count() == 2
     }
 
     /// Forward substitution L y = b in the first `count` columns, which also updates the later rows.
     pub fn forward(
         &mut self,
-        l: (&Supernodes, &[f64]),
+        (l, values): (&Supernodes, &[f64]),
         b: &mut [f64],
         count: usize,
         executor: &dyn Executor,
     ) {
-        let [first, second, rest] = self.parts(l, count);
-        let (own, later) = b.split_at_mut(rest.first);
-        let (left, right) = own.split_at_mut(second.first);
-        let [sums, others] = &mut self.sums;
-        if rest.first > 0 {
-            executor.join(&mut || first.forward(left, sums), &mut || {
-                second.forward(right, others)
-            });
-        }
-        for ((b, left), right) in later.iter_mut().zip(&sums.later).zip(&others.later) {
-            *b -= left + right;
-        }
-        rest.forward(later, sums);
+        let place = &self.place[..];
+        let columns = Columns {
+            l,
+            values,
+            place,
+            count,
+        };
+        self.root.rise(b, executor, &|top| {
+            vectorise(
+                #[inline(always)]
+                || columns.substitute(top),
+            );
+        });
     }
 
     /// Back substitution Lᵀ u = y in the first `count` columns, with known u in the others.
     pub fn backward(
         &mut self,
-        l: (&Supernodes, &[f64]),
+        (l, values): (&Supernodes, &[f64]),
         y: &mut [f64],
         count: usize,
         executor: &dyn Executor,
     ) {
-        let [first, second, rest] = self.parts(l, count);
-        let (own, later) = y.split_at_mut(rest.first);
-        let (left, right) = own.split_at_mut(second.first);
-        let [sums, others] = &mut self.sums;
-        rest.backward(later, &[], &mut sums.below);
-        if rest.first > 0 {
-            executor.join(
-                &mut || first.backward(left, later, &mut sums.below),
-                &mut || second.backward(right, later, &mut others.below),
-            );
-        }
-    }
-
-    /// The two parts, and the rest.
-    fn parts<'a>(&self, (l, values): (&'a Supernodes, &'a [f64]), count: usize) -> [Part<'a>; 3] {
-        let [second, rest] = self.columns;
-        let [one, other] = self.parts.clone();
-        let all = [(one, 0), (other, second), (self.rest.clone(), rest)];
-        all.map(|(nodes, first)| Part {
+        let place = &self.place[..];
+        let columns = Columns {
             l,
             values,
-            nodes,
-            first,
-            rest,
+            place,
             count,
-        })
+        };
+        self.root.descend(y, executor, &|top| {
+            vectorise(
+                #[inline(always)]
+                || columns.substitute_back(top),
+            );
+        });
+    }
+
+    /// y = A x in the first `count` rows, for a symmetric A.
+    pub fn multiply(
+        &mut self,
+        matrix: LowerHalf<'_>,
+        x: &[f64],
+        y: &mut [f64],
+        count: usize,
+        executor: &dyn Executor,
+    ) {
+        y.fill(0.0);
+        let place = &self.place[..];
+        self.root.rise(y, executor, &|top| {
+            let (start, end) = (top.columns.start, top.columns.end.min(count));
+            for column in start..end {
+                let entries = matrix.pattern.column(column);
+                let rows = &matrix.pattern.row_idx[entries.clone()];
+                let values = &matrix.values[entries];
+                for (value, &row) in values.iter().zip(rows) {
+                    let row = row as usize;
+                    match row < top.columns.end {
+                        true => top.own[row - start] += value * x[column],
+                        false => top.later[place[row] as usize] += value * x[column],
+                    }
+                }
+                top.own[column - start] += sum_of(values, rows, |value, row| match row == column {
+                    true => 0.0,
+                    false => value * x[row],
+                });
+            }
+        });
     }
 }
 
-impl Part<'_> {
-    fn forward(&self, own: &mut [f64], sums: &mut PartialSums) {
-        sums.later.fill(0.0);
-        vectorise(
-            #[inline(always)]
-            || self.substitute(own, sums),
-        );
+impl Branch {
+    /// `later` is the number of later rows that it can change.
+    fn new(l: &Supernodes, tree: &Subtree, later: usize, place: &mut [u32]) -> Self {
+        let values =
+            |halves: &[Subtree; 2]| l.values(&(halves[0].first()..halves[1].top.end)).len();
+        let halves = tree.halves().filter(|halves| values(halves) >= LARGE);
+        let nodes = match halves {
+            Some(_) => tree.top.clone(),
+            None => tree.first()..tree.top.end,
+        };
+        let column = |s: usize| {
+            l.nodes
+                .get(s)
+                .map_or(place.len(), |node| node.columns.start)
+        };
+        let columns = column(nodes.start)..column(nodes.end);
+        let first = column(tree.first());
+        for (k, place) in (later as u32..).zip(&mut place[columns.clone()]) {
+            *place = k;
+        }
+        let below = nodes.clone().map(|s| l.rows(s).len()).max();
+        let inside = later + columns.len();
+        let mut half = |half| Branch::new(l, half, inside, place);
+        Branch {
+            halves: halves.map(|[one, other]| Box::new([half(one), half(other)])),
+            nodes,
+            columns,
+            first,
+            below: vec![0.0; below.unwrap_or(0)],
+            later: vec![0.0; later],
+        }
     }
 
+    fn top<'a>(&'a mut self, own: &'a mut [f64]) -> Top<'a> {
+        Top {
+            nodes: self.nodes.clone(),
+            columns: self.columns.clone(),
+            own,
+            later: &mut self.later,
+            below: &mut self.below,
+        }
+    }
+
+    /// Does a job from the leaves to the root. It changes the top's rows, and adds to the later ones.
+    fn rise(&mut self, own: &mut [f64], executor: &dyn Executor, job: &Job<'_>) {
+        self.later.fill(0.0);
+        let (parts, top) = own.split_at_mut(self.columns.start - self.first);
+        if let Some([one, other]) = self.halves.as_deref_mut() {
+            let (left, right) = parts.split_at_mut(other.first - one.first);
+            executor.join(&mut || one.rise(left, executor, job), &mut || {
+                other.rise(right, executor, job)
+            });
+            let sums = one.later.iter().zip(&other.later);
+            for (to, (one, other)) in self.later.iter_mut().chain(&mut *top).zip(sums) {
+                *to += one + other;
+            }
+        }
+        job(self.top(top));
+    }
+
+    /// Does a job from the root to the leaves, which know the values of later rows.
+    fn descend(&mut self, own: &mut [f64], executor: &dyn Executor, job: &Job<'_>) {
+        let (parts, top) = own.split_at_mut(self.columns.start - self.first);
+        job(self.top(top));
+        if let Some([one, other]) = self.halves.as_deref_mut() {
+            for half in [&mut *one, &mut *other] {
+                let known = self.later.iter().chain(&*top);
+                half.later
+                    .iter_mut()
+                    .zip(known)
+                    .for_each(|(to, known)| *to = *known);
+            }
+            let (left, right) = parts.split_at_mut(other.first - one.first);
+            executor.join(&mut || one.descend(left, executor, job), &mut || {
+                other.descend(right, executor, job)
+            });
+        }
+    }
+}
+
+impl Columns<'_> {
     #[inline(always)]
-    fn substitute(&self, own: &mut [f64], sums: &mut PartialSums) {
-        let end = self.first + own.len();
-        for s in self.nodes.clone() {
+    fn substitute(&self, top: Top<'_>) {
+        let (first, end) = (top.columns.start, top.columns.end);
+        for s in top.nodes {
             let (node, rows) = (&self.l.nodes[s], self.l.rows(s));
-            let (start, width) = (node.columns.start - self.first, node.width());
+            let (start, width) = (node.columns.start - first, node.width());
             let columns = self.count.saturating_sub(node.columns.start).min(width);
             if columns == 0 {
                 break;
             }
-            let below = &mut sums.below[..rows.len()];
+            let below = &mut top.below[..rows.len()];
             below.fill(0.0);
-            let b = &mut own[start..start + width];
+            let b = &mut top.own[start..start + width];
             for k in 0..columns {
                 let (column, value) = (node.column(self.values, k), b[k]);
                 add(&mut b[k + 1..], -value, &column[k + 1..width]);
@@ -166,40 +251,33 @@ impl Part<'_> {
             }
             let inside = rows.partition_point(|&row| (row as usize) < end);
             for (&row, below) in rows.iter().zip(&*below).take(inside) {
-                own[row as usize - self.first] -= below;
+                top.own[row as usize - first] -= below;
             }
             for (&row, below) in rows.iter().zip(&*below).skip(inside) {
-                sums.later[row as usize - self.rest] += below;
+                top.later[self.place[row as usize] as usize] -= below;
             }
         }
     }
 
-    fn backward(&self, own: &mut [f64], later: &[f64], below: &mut [f64]) {
-        vectorise(
-            #[inline(always)]
-            || self.substitute_back(own, later, below),
-        );
-    }
-
     #[inline(always)]
-    fn substitute_back(&self, own: &mut [f64], later: &[f64], below: &mut [f64]) {
-        let end = self.first + own.len();
-        for s in self.nodes.clone().rev() {
+    fn substitute_back(&self, top: Top<'_>) {
+        let (first, end) = (top.columns.start, top.columns.end);
+        for s in top.nodes.rev() {
             let (node, rows) = (&self.l.nodes[s], self.l.rows(s));
-            let (start, width) = (node.columns.start - self.first, node.width());
+            let (start, width) = (node.columns.start - first, node.width());
             let columns = self.count.saturating_sub(node.columns.start).min(width);
             if columns == 0 {
                 continue;
             }
-            let below = &mut below[..rows.len()];
+            let below = &mut top.below[..rows.len()];
             let inside = rows.partition_point(|&row| (row as usize) < end);
             for (below, &row) in below.iter_mut().zip(&rows[..inside]) {
-                *below = own[row as usize - self.first];
+                *below = top.own[row as usize - first];
             }
             for (below, &row) in below[inside..].iter_mut().zip(&rows[inside..]) {
-                *below = later[row as usize - self.rest];
+                *below = top.later[self.place[row as usize] as usize];
             }
-            let y = &mut own[start..start + width];
+            let y = &mut top.own[start..start + width];
             for k in (0..columns).rev() {
                 let column = node.column(self.values, k);
                 let sum = dot(&column[width..], below) + dot(&column[k + 1..width], &y[k + 1..]);

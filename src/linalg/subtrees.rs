@@ -25,10 +25,9 @@ use faer::linalg::triangular_solve::solve_unit_lower_triangular_in_place;
 use faer::{Accum, MatMut, MatRef, Par};
 use std::ops::Range;
 
-/// A range of supernodes is split at most this many times.
-const DEPTH: usize = 2;
-/// A range is split if it takes at least this many multiplications, and if this saves at least this fraction of them on two threads.
-const LEAST: f64 = 1e7;
+/// A range of supernodes is split if it takes at least this many multiplications, the first for all supernodes, the next for its halves
+/// and so on, and if this saves at least this fraction of them on two threads. Every split costs a workspace.
+const LEAST: [f64; 4] = [1e7, 1e7, 1e9, 1e9];
 const SAVED: f64 = 0.1;
 /// Products with at most this many columns are computed in full, with the unused half.
 const NARROW: usize = 16;
@@ -51,7 +50,7 @@ pub(super) struct Subtree {
     /// Two parts that do not change each other, factored first.
     halves: Option<Box<[Subtree; 2]>>,
     /// The supernodes that follow.
-    top: Range<usize>,
+    pub top: Range<usize>,
     /// Number of parts that are not split, and of workspaces.
     pub leaves: usize,
 }
@@ -80,15 +79,22 @@ impl Subtree {
     pub fn new(l: &Supernodes) -> Self {
         let whole = 0..l.nodes.len();
         match Costs::new(l) {
-            Some(costs) => Subtree::split(l, whole, &costs, DEPTH),
+            Some(costs) => Subtree::split(l, whole, &costs, &LEAST),
             None => Subtree::whole(l, whole),
         }
     }
 
-    /// The supernodes of the two parts that do not change each other, if there are any.
-    pub fn parts(&self) -> Option<[Range<usize>; 2]> {
-        let [first, second] = self.halves.as_deref()?;
-        Some([0..first.top.end, first.top.end..second.top.end])
+    /// The two parts that do not change each other, if there are any.
+    pub fn halves(&self) -> Option<&[Subtree; 2]> {
+        self.halves.as_deref()
+    }
+
+    /// The first supernode.
+    pub fn first(&self) -> usize {
+        match self.halves() {
+            Some([first, _]) => first.first(),
+            None => self.top.start,
+        }
     }
 
     fn whole(l: &Supernodes, top: Range<usize>) -> Self {
@@ -101,11 +107,14 @@ impl Subtree {
     }
 
     /// Splits a range where two threads need the least time.
-    fn split(l: &Supernodes, range: Range<usize>, costs: &Costs, depth: usize) -> Self {
+    fn split(l: &Supernodes, range: Range<usize>, costs: &Costs, least: &[f64]) -> Self {
+        let Some((&least, deeper)) = least.split_first() else {
+            return Subtree::whole(l, range);
+        };
         let whole = costs.of(&range);
         let mut best = (whole * (1.0 - SAVED), None);
         let mut top = range.end;
-        while depth > 0 && whole >= LEAST && costs.of(&(top..range.end)) < best.0 {
+        while whole >= least && costs.of(&(top..range.end)) < best.0 {
             let mut middle = top;
             while middle > range.start {
                 middle = costs.first[middle - 1].max(range.start);
@@ -120,7 +129,7 @@ impl Subtree {
         let Some((middle, top)) = best.1 else {
             return Subtree::whole(l, range);
         };
-        let half = |half| Subtree::split(l, half, costs, depth - 1);
+        let half = |half| Subtree::split(l, half, costs, deeper);
         let halves = [half(range.start..middle), half(middle..top)];
         Subtree {
             start: halves[0].start,

@@ -218,7 +218,7 @@ impl SymmetricFactors {
         self.divide(inner);
         self.moved[inner..].copy_from_slice(known);
         self.backward(inner, executor);
-        self.check(inner, b, x)
+        self.check(inner, b, x, executor)
     }
 
     /// Solves (K + shift) x = b and checks the solution.
@@ -235,7 +235,7 @@ impl SymmetricFactors {
         self.forward(b, n, executor);
         self.divide(n);
         self.backward(n, executor);
-        self.check(n, b, x)
+        self.check(n, b, x, executor)
     }
 
     /// y of a right-hand side, in `moved`.
@@ -261,15 +261,26 @@ impl SymmetricFactors {
     }
 
     /// Restores the original order of x, and checks the equations of the first `count` unknowns.
-    fn check(&mut self, count: usize, b: &[f64], x: &mut [f64]) -> Result<(), SolveError> {
+    fn check(
+        &mut self,
+        count: usize,
+        b: &[f64],
+        x: &mut [f64],
+        executor: &dyn Executor,
+    ) -> Result<(), SolveError> {
         if !self.ready {
             return Err(SolveError::Singular);
         }
         for (&unknown, value) in self.order.iter().zip(&self.moved) {
             x[unknown] = *value;
         }
-        self.pattern
-            .multiply_half(&self.values, &self.moved, &mut self.residual);
+        let matrix = LowerHalf {
+            pattern: &self.pattern,
+            values: &self.values,
+        };
+        let residual = &mut self.residual;
+        self.substitution
+            .multiply(matrix, &self.moved, residual, count, executor);
         let residual = &mut self.residual[..count];
         for (product, &unknown) in residual.iter_mut().zip(&self.order) {
             *product -= b[unknown];
@@ -427,7 +438,7 @@ mod tests {
         (pattern, values, positions)
     }
 
-    const SIDE: usize = 110;
+    const SIDE: usize = 200;
 
     #[test]
     fn factors_and_solutions_have_the_same_bits_on_one_thread_and_on_many() {
@@ -436,7 +447,7 @@ mod tests {
         let b: Vec<f64> = (0..n).map(|i| (i as f64).cos()).collect();
         let sizes = [&positions[..], &[]].map(|positions| {
             let mut factors = SymmetricFactors::new(pattern.clone(), &last, positions).unwrap();
-            assert!(factors.tree.parts().is_some() && factors.substitution.is_split());
+            assert!(factors.substitution.is_split_twice());
             let mut solve = |executor: &dyn Executor| {
                 let (mut x, mut load, mut recovered) =
                     (vec![0.0; n], vec![0.0; SIDE], vec![0.0; n]);
@@ -469,7 +480,7 @@ mod tests {
         let (pattern, values, positions) = large_grid(SIDE / 2);
         let n = pattern.size();
         let mut factors = SymmetricFactors::new(pattern, &[], &positions).unwrap();
-        assert!(factors.substitution.is_split());
+        assert!(factors.substitution.is_split_twice());
         let b: Vec<f64> = (0..n).map(|i| (i as f64).cos()).collect();
         factors.factor(&values, 0.0, &Threads).unwrap();
         factors.solve(&b, &mut vec![0.0; n], &Threads).unwrap();

@@ -68,8 +68,6 @@ pub struct Condensation {
     turned: Vec<usize>,
     /// A; or S + T, then K'.
     matrix: Vec<f64>,
-    /// The matrix to factor.
-    inner: Vec<f64>,
     dense: DenseFactors,
     /// The entries of M as (row of u_m, row of u_s, weight): pairs for x and y, of which the rows of x are listed, and others.
     pairs: Vec<(usize, usize, f64)>,
@@ -137,7 +135,6 @@ impl Condensation {
             turned: Vec::new(),
             matrix: vec![0.0; c * c],
             dense: DenseFactors::new(c, z)?,
-            inner: vec![0.0; c * c],
             pairs: Vec::new(),
             singles: Vec::new(),
             residual: vec![0.0; n],
@@ -173,7 +170,6 @@ impl Condensation {
             CondensationPath::Direct => n - z,
         };
         self.dense.resize(solved);
-        self.inner.resize(solved * solved, 0.0);
         self.turning.resize(n * n, 0.0);
         self.matrix.resize(n * n, 0.0);
         self.motions.resize(n * z, 0.0);
@@ -259,18 +255,14 @@ impl Condensation {
         out.stiffness = f64::INFINITY;
         self.add_turning();
         self.transform(interfaces, frames);
-        for (k, column) in self.matrix.chunks_exact(c.max(1)).enumerate() {
-            let to = if k < m {
-                &mut self.inner[k * m..(k + 1) * m]
-            } else {
-                out.response[(k - m) * z..(k - m + 1) * z].copy_from_slice(&column[m..]);
-                &mut self.motions[(k - m) * m..(k - m + 1) * m]
-            };
-            to.copy_from_slice(&column[..m]);
+        let slaves = self.matrix[m * c..].chunks_exact(c.max(1));
+        for (k, column) in slaves.enumerate() {
+            self.motions[k * m..(k + 1) * m].copy_from_slice(&column[..m]);
+            out.response[k * z..(k + 1) * z].copy_from_slice(&column[m..]);
         }
         let motions = &mut self.motions[..m * z];
         let (at_rest, given) = self.start.split_at_mut(m);
-        self.dense.factor(&self.inner);
+        self.dense.factor_part(&self.matrix, c);
         self.dense.solve(at_rest)?;
         self.dense.solve_with(&*self.executor, motions)?;
         out.start.copy_from_slice(given);
