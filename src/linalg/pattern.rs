@@ -123,9 +123,14 @@ impl Pattern {
         (pattern, from)
     }
 
-    /// The transposed pattern: where each column starts, and its rows.
-    pub(super) fn transposed(&self) -> (Vec<usize>, Vec<usize>) {
-        lists(self.n, || self.iter())
+    /// The transposed pattern.
+    pub(super) fn transposed(&self) -> Pattern {
+        let (starts, row_idx) = lists(self.n, || self.iter().map(|(row, col)| (row, col as u32)));
+        Pattern {
+            n: self.n,
+            col_ptr: starts.iter().map(|&start| start as u32).collect(),
+            row_idx,
+        }
     }
 
     /// The pattern of one of [`Pattern::blocks`], or of consecutive ones, and the range of its values.

@@ -287,7 +287,7 @@ impl Sum<'_> {
             }
         }
         for &d in self.l.earlier(self.s) {
-            self.subtract(d, &columns, out, room);
+            self.subtract(d as usize, &columns, out, room);
         }
     }
 

@@ -18,11 +18,11 @@ pub(super) struct Supernode {
 pub(super) struct Supernodes {
     pub nodes: Vec<Supernode>,
     /// The supernode of each column.
-    node_of: Vec<usize>,
+    node_of: Vec<u32>,
     rows: Vec<u32>,
     /// The earlier supernodes with rows among the columns of each one, ascending: where each list starts, and the lists.
     starts: Vec<usize>,
-    earlier: Vec<usize>,
+    earlier: Vec<u32>,
 }
 
 /// A column of L and its pivot.
@@ -53,7 +53,7 @@ impl Supernode {
 }
 
 impl Supernodes {
-    pub fn from_symbolic(symbolic: &SymbolicSupernodalCholesky<usize>) -> Self {
+    pub fn from_symbolic(symbolic: &SymbolicSupernodalCholesky<u32>) -> Self {
         let count = symbolic.n_supernodes();
         let values = symbolic.col_ptr_for_val();
         let mut nodes = Vec::with_capacity(count);
@@ -61,24 +61,24 @@ impl Supernodes {
         let mut rows: Vec<u32> = Vec::new();
         for s in 0..count {
             let node = symbolic.supernode(s);
-            let columns = node.start()..symbolic.supernode_end()[s];
-            node_of[columns.clone()].fill(s);
+            let columns = node.start()..symbolic.supernode_end()[s] as usize;
+            node_of[columns.clone()].fill(s as u32);
             let first = rows.len();
-            rows.extend(node.pattern().iter().map(|&row| row as u32));
+            rows.extend(node.pattern());
             nodes.push(Supernode {
                 columns,
                 rows: first..rows.len(),
-                values: values[s]..values[s + 1],
+                values: values[s] as usize..values[s + 1] as usize,
             });
         }
-        let mut pairs: Vec<(usize, usize)> = Vec::new();
-        for (d, node) in nodes.iter().enumerate() {
+        let mut pairs: Vec<(u32, u32)> = Vec::new();
+        for (d, node) in (0..).zip(&nodes) {
             let reached = rows[node.rows.clone()].iter();
             let reached = reached.map(|&row| node_of[row as usize]);
             pairs.extend(reached.map(|s| (s, d)));
         }
         pairs.dedup();
-        let (starts, earlier) = lists(count, || pairs.iter().copied());
+        let (starts, earlier) = lists(count, || pairs.iter().map(|&(s, d)| (s as usize, d)));
         Supernodes {
             nodes,
             node_of,
@@ -111,13 +111,15 @@ impl Supernodes {
     }
 
     /// The supernodes that change a later one.
-    pub fn earlier(&self, s: usize) -> &[usize] {
+    pub fn earlier(&self, s: usize) -> &[u32] {
         &self.earlier[self.starts[s]..self.starts[s + 1]]
     }
 
     /// The first supernode that one changes.
     pub fn parent(&self, s: usize) -> Option<usize> {
-        self.rows(s).first().map(|&row| self.node_of[row as usize])
+        self.rows(s)
+            .first()
+            .map(|&row| self.node_of[row as usize] as usize)
     }
 
     /// The columns from `first` on, in elimination order.

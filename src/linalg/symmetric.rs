@@ -24,13 +24,12 @@
 use super::check::{SolveError, UNDERFLOW, largest};
 use super::executor::Executor;
 use super::order::order;
-use super::pattern::Pattern;
+use super::pattern::{Pattern, symbolic_view};
 use super::registers;
 use super::substitution::Substitution;
 use super::subtrees::{LowerHalf, Subtree, Workspace};
 use super::supernodes::Supernodes;
 use faer::linalg::matmul::triangular::{BlockStructure, matmul};
-use faer::sparse::SymbolicSparseColMatRef;
 use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, SymbolicCholeskyRaw, SymmetricOrdering, factorize_symbolic_cholesky,
@@ -65,7 +64,7 @@ pub struct SymmetricFactors {
     /// y, then u, in elimination order.
     moved: Vec<f64>,
     substitution: Substitution,
-    /// L_cc, and D_c L_ccᵀ, column-major.
+    /// L_cc, and D_c L_ccᵀ, column-major; entries outside their patterns stay zero.
     lower: Vec<f64>,
     upper: Vec<f64>,
     ready: bool,
@@ -89,11 +88,15 @@ impl SymmetricFactors {
             supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
             ..Default::default()
         };
-        let (starts, columns) = lower.transposed();
-        let upper = SymbolicSparseColMatRef::new_checked(n, n, &starts, None, &columns);
-        let symbolic =
-            factorize_symbolic_cholesky(upper, Side::Upper, SymmetricOrdering::Identity, params)
-                .map_err(|_| SolveError::OutOfMemory)?;
+        let upper = lower.transposed();
+        let symbolic = factorize_symbolic_cholesky(
+            symbolic_view(&upper),
+            Side::Upper,
+            SymmetricOrdering::Identity,
+            params,
+        )
+        .map_err(|_| SolveError::OutOfMemory)?;
+        drop(upper);
         let SymbolicCholeskyRaw::Supernodal(raw) = symbolic.raw() else {
             unreachable!("the symbolic part must be supernodal")
         };
@@ -305,8 +308,6 @@ impl SymmetricFactors {
     /// The condensed matrix S + shift, column-major, in the order of `last`.
     pub fn condensed(&mut self, out: &mut [f64]) {
         let (c, first) = (self.last.len(), self.inner());
-        self.lower.fill(0.0);
-        self.upper.fill(0.0);
         for column in self.l.columns(&self.factors, first) {
             let to = column.place - first;
             let own = (to + 1..to + 1 + column.own.len()).zip(column.own);
