@@ -43,13 +43,12 @@ struct Top<'a> {
     below: &'a mut [f64],
 }
 
-/// Factors whose columns from `count` on are left out.
+/// The columns of L.
 #[derive(Clone, Copy)]
 struct Columns<'a> {
     l: &'a Supernodes,
     values: &'a [f64],
     place: &'a [u32],
-    count: usize,
 }
 
 type Job<'a> = dyn Fn(Top<'_>) + Sync + 'a;
@@ -71,21 +70,15 @@ impl Substitution {
         halves.filter(|half| half.halves.is_some()).count() == 2
     }
 
-    /// Forward substitution L y = b in the first `count` columns, which also updates the later rows.
+    /// Forward substitution L y = b, which also updates the rows that are not eliminated.
     pub fn forward(
         &mut self,
         (l, values): (&Supernodes, &[f64]),
         b: &mut [f64],
-        count: usize,
         executor: &dyn Executor,
     ) {
         let place = &self.place[..];
-        let columns = Columns {
-            l,
-            values,
-            place,
-            count,
-        };
+        let columns = Columns { l, values, place };
         self.root.rise(b, executor, &|top| {
             vectorise(
                 #[inline(always)]
@@ -94,21 +87,15 @@ impl Substitution {
         });
     }
 
-    /// Back substitution Lᵀ u = y in the first `count` columns, with known u in the others.
+    /// Back substitution Lᵀ u = y, with known u in the rows that are not eliminated.
     pub fn backward(
         &mut self,
         (l, values): (&Supernodes, &[f64]),
         y: &mut [f64],
-        count: usize,
         executor: &dyn Executor,
     ) {
         let place = &self.place[..];
-        let columns = Columns {
-            l,
-            values,
-            place,
-            count,
-        };
+        let columns = Columns { l, values, place };
         self.root.descend(y, executor, &|top| {
             vectorise(
                 #[inline(always)]
@@ -234,17 +221,13 @@ impl Columns<'_> {
     #[inline(always)]
     fn substitute(&self, top: Top<'_>) {
         let (first, end) = (top.columns.start, top.columns.end);
-        for s in top.nodes {
+        for s in top.nodes.start..top.nodes.end.min(self.l.tail) {
             let (node, rows) = (&self.l.nodes[s], self.l.rows(s));
             let (start, width) = (node.columns.start - first, node.width());
-            let columns = self.count.saturating_sub(node.columns.start).min(width);
-            if columns == 0 {
-                break;
-            }
             let below = &mut top.below[..rows.len()];
             below.fill(0.0);
             let b = &mut top.own[start..start + width];
-            for k in 0..columns {
+            for k in 0..width {
                 let (column, value) = (node.column(self.values, k), b[k]);
                 add(&mut b[k + 1..], -value, &column[k + 1..width]);
                 add(below, value, &column[width..]);
@@ -262,13 +245,9 @@ impl Columns<'_> {
     #[inline(always)]
     fn substitute_back(&self, top: Top<'_>) {
         let (first, end) = (top.columns.start, top.columns.end);
-        for s in top.nodes.rev() {
+        for s in (top.nodes.start..top.nodes.end.min(self.l.tail)).rev() {
             let (node, rows) = (&self.l.nodes[s], self.l.rows(s));
             let (start, width) = (node.columns.start - first, node.width());
-            let columns = self.count.saturating_sub(node.columns.start).min(width);
-            if columns == 0 {
-                continue;
-            }
             let below = &mut top.below[..rows.len()];
             let inside = rows.partition_point(|&row| (row as usize) < end);
             for (below, &row) in below.iter_mut().zip(&rows[..inside]) {
@@ -278,7 +257,7 @@ impl Columns<'_> {
                 *below = top.later[self.place[row as usize] as usize];
             }
             let y = &mut top.own[start..start + width];
-            for k in (0..columns).rev() {
+            for k in (0..width).rev() {
                 let column = node.column(self.values, k);
                 let sum = dot(&column[width..], below) + dot(&column[k + 1..width], &y[k + 1..]);
                 y[k] -= sum;

@@ -6,6 +6,8 @@
 //! B = A_·s − Σ_d L_·d D_d L_sdᵀ,      B_ss = L_ss D_s L_ssᵀ,      L_·s = B_·s L_ss⁻ᵀ D_s⁻¹.
 //! ```
 //!
+//! The supernodes of the unknowns that are not eliminated keep B, which is S.
+//!
 //! Supernodes in different subtrees do not change each other, so the supernodes are split into two halves and a top that follows
 //! both; each half is split in the same way. The top has few but large supernodes, whose columns are changed in parallel. Every
 //! entry is computed from the same terms in the same order as in a single pass, so the bits do not depend on the split.
@@ -178,7 +180,9 @@ impl Subtree {
             };
             sum.all(node.columns.clone(), own, rooms, executor);
             rooms[0].place = place;
-            eliminate(node, own, rooms, executor)?;
+            if s < l.tail {
+                eliminate(node, own, rooms, executor)?;
+            }
         }
         Ok(())
     }
@@ -192,7 +196,10 @@ impl Costs {
         let mut before = vec![0.0];
         for (s, node) in l.nodes.iter().enumerate() {
             let (width, height) = (node.width() as f64, node.height() as f64);
-            let own = width * (height * (height - width) + width * width / 3.0);
+            let own = match s < l.tail {
+                true => width * (height * (height - width) + width * width / 3.0),
+                false => 0.0,
+            };
             before.push(before[s] + own);
             if s + 1 - first[s] != size[s] {
                 return None;
@@ -214,15 +221,16 @@ impl Workspace {
     /// # Errors
     /// [`SolveError::OutOfMemory`].
     pub fn new(l: &Supernodes) -> Result<Self, SolveError> {
-        let width = l.nodes.iter().map(Supernode::width).max().unwrap_or(0);
-        let rows = (0..l.nodes.len()).map(|s| l.rows(s).len()).max();
+        let width = l.nodes[..l.tail].iter().map(Supernode::width).max();
+        let width = width.unwrap_or(0);
+        let rows = (0..l.tail).map(|s| l.rows(s).len()).max();
         let rows = rows.map_or(0, |rows| rows.min(ROWS));
         let dense = cholesky_in_place_scratch::<f64>(width, Par::Seq, Default::default());
         Ok(Workspace {
             place: vec![0; l.nodes.last().map_or(0, |node| node.columns.end)],
             scaled: vec![0.0; rows * width],
             places: vec![0; rows],
-            result: vec![0.0; rows * width.min(ROWS)],
+            result: vec![0.0; rows * rows],
             dense: MemBuffer::try_new(dense).map_err(|_| SolveError::OutOfMemory)?,
         })
     }

@@ -14,18 +14,21 @@ pub(super) struct Supernode {
     pub values: Range<usize>,
 }
 
-/// The supernodes of L in elimination order.
+/// The supernodes of L in elimination order. Those from `tail` on contain the unknowns that are not eliminated.
 pub(super) struct Supernodes {
     pub nodes: Vec<Supernode>,
+    pub tail: usize,
+    /// Number of unknowns that are eliminated.
+    pub inner: usize,
     /// The supernode of each column.
     node_of: Vec<u32>,
     rows: Vec<u32>,
-    /// The earlier supernodes with rows among the columns of each one, ascending: where each list starts, and the lists.
+    /// The eliminated supernodes with rows among the columns of each one, ascending: where each list starts, and the lists.
     starts: Vec<usize>,
     earlier: Vec<u32>,
 }
 
-/// A column of L and its pivot.
+/// A column of L and its pivot, or of S and its diagonal.
 pub(super) struct Column<'a> {
     pub place: usize,
     pub pivot: f64,
@@ -53,34 +56,45 @@ impl Supernode {
 }
 
 impl Supernodes {
-    pub fn from_symbolic(symbolic: &SymbolicSupernodalCholesky<u32>) -> Self {
-        let count = symbolic.n_supernodes();
-        let values = symbolic.col_ptr_for_val();
-        let mut nodes = Vec::with_capacity(count);
+    /// The first `inner` unknowns are eliminated; a supernode that contains some of them is split there.
+    pub fn from_symbolic(symbolic: &SymbolicSupernodalCholesky<u32>, inner: usize) -> Self {
+        let mut nodes: Vec<Supernode> = Vec::with_capacity(symbolic.n_supernodes() + 1);
         let mut node_of = vec![0; symbolic.nrows()];
         let mut rows: Vec<u32> = Vec::new();
-        for s in 0..count {
+        for s in 0..symbolic.n_supernodes() {
             let node = symbolic.supernode(s);
-            let columns = node.start()..symbolic.supernode_end()[s] as usize;
-            node_of[columns.clone()].fill(s as u32);
-            let first = rows.len();
-            rows.extend(node.pattern());
-            nodes.push(Supernode {
-                columns,
-                rows: first..rows.len(),
-                values: values[s] as usize..values[s + 1] as usize,
-            });
+            let (start, end) = (node.start(), symbolic.supernode_end()[s] as usize);
+            let middle = inner.clamp(start, end);
+            for columns in [start..middle, middle..end] {
+                if columns.is_empty() {
+                    continue;
+                }
+                let first = rows.len();
+                rows.extend(columns.end as u32..end as u32);
+                rows.extend(node.pattern());
+                node_of[columns.clone()].fill(nodes.len() as u32);
+                let values = nodes.last().map_or(0, |node| node.values.end);
+                let height = columns.len() + rows.len() - first;
+                nodes.push(Supernode {
+                    values: values..values + columns.len() * height,
+                    columns,
+                    rows: first..rows.len(),
+                });
+            }
         }
+        let tail = nodes.partition_point(|node| node.columns.start < inner);
         let mut pairs: Vec<(u32, u32)> = Vec::new();
-        for (d, node) in (0..).zip(&nodes) {
+        for (d, node) in (0..).zip(&nodes[..tail]) {
             let reached = rows[node.rows.clone()].iter();
             let reached = reached.map(|&row| node_of[row as usize]);
             pairs.extend(reached.map(|s| (s, d)));
         }
         pairs.dedup();
-        let (starts, earlier) = lists(count, || pairs.iter().map(|&(s, d)| (s as usize, d)));
+        let (starts, earlier) = lists(nodes.len(), || pairs.iter().map(|&(s, d)| (s as usize, d)));
         Supernodes {
             nodes,
+            tail,
+            inner,
             node_of,
             rows,
             starts,
@@ -110,7 +124,7 @@ impl Supernodes {
         )
     }
 
-    /// The supernodes that change a later one.
+    /// The eliminated supernodes that change a later one.
     pub fn earlier(&self, s: usize) -> &[u32] {
         &self.earlier[self.starts[s]..self.starts[s + 1]]
     }
@@ -122,20 +136,18 @@ impl Supernodes {
             .map(|&row| self.node_of[row as usize] as usize)
     }
 
-    /// The columns from `first` on, in elimination order.
+    /// The columns of consecutive supernodes.
     pub fn columns<'a>(
         &'a self,
         values: &'a [f64],
-        first: usize,
+        nodes: Range<usize>,
     ) -> impl Iterator<Item = Column<'a>> {
-        let nodes = self.nodes.partition_point(|node| node.columns.end <= first);
-        (nodes..self.nodes.len()).flat_map(move |s| {
+        nodes.flat_map(move |s| {
             let (node, rows) = (&self.nodes[s], self.rows(s));
-            let start = node.columns.start;
-            (first.saturating_sub(start)..node.width()).map(move |k| {
+            (0..node.width()).map(move |k| {
                 let (own, below) = node.column(values, k).split_at(node.width());
                 Column {
-                    place: start + k,
+                    place: node.columns.start + k,
                     pivot: own[k],
                     own: &own[k + 1..],
                     below,

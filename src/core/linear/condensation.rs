@@ -219,7 +219,7 @@ impl Condensation {
             self.far.renew();
         }
         each(executor, &mut self.parts, &|part| {
-            part.done = part.condense(stands, stiffness, residual, k, executor);
+            part.done = part.condense(stands, stiffness, residual, executor);
         });
         for part in &self.parts {
             part.done?;
@@ -546,27 +546,21 @@ impl BodyGroup {
         })
     }
 
-    /// Computes r̃, and S unless the previous one stands; the shift makes S regular if only the interface supports a body.
+    /// Computes r̃, and S unless the previous one stands.
     fn condense(
         &mut self,
         stands: bool,
         stiffness: &[f64],
         residual: &[f64],
-        shift: f64,
         executor: &dyn Executor,
     ) -> Result<(), SolveError> {
-        let residual = &residual[self.equations.clone()];
-        if stands {
-            self.factors.condense(residual, &mut self.load, executor);
-            return Ok(());
+        if !stands {
+            let stiffness = &stiffness[self.values.clone()];
+            self.factors.factor(stiffness, executor)?;
+            self.factors.condensed(&mut self.schur);
         }
-        self.factors
-            .factor(&stiffness[self.values.clone()], shift, executor)?;
+        let residual = &residual[self.equations.clone()];
         self.factors.condense(residual, &mut self.load, executor);
-        self.factors.condensed(&mut self.schur);
-        let next = self.unknowns.len() + 1;
-        let diagonal = self.schur.iter_mut().step_by(next);
-        diagonal.for_each(|entry| *entry -= shift);
         Ok(())
     }
 

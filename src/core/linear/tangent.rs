@@ -158,31 +158,29 @@ impl Tangent {
             self.factors = Some((last, factors));
         }
         let (last, factors) = self.factors.as_mut()?;
-        let (n, c, shift) = (self.pattern.size(), last.len(), system.spring(model));
+        let (n, c) = (self.pattern.size(), last.len());
         let executor = &*system.executor;
-        factors.factor(&self.values, shift, executor).ok()?;
+        factors.factor(&self.values, executor).ok()?;
         // Growth shows in the solution for almost any right-hand side.
         let (ones, mut x) = (vec![1.0; n], vec![0.0; n]);
-        factors.solve(&ones, &mut x, executor).ok()?;
-        factors.pivots(&mut x);
+        factors.condense(&ones, &mut x[..c], executor);
+        let known = &ones[..c];
+        factors.recover(&ones, known, &mut x, executor).ok()?;
         let diagonal = |e: usize| {
             self.pattern
                 .slot(e, e)
                 .map_or(0.0, |k| self.values[k].abs())
         };
-        let mut is_last = vec![false; n];
-        last.iter().for_each(|&e| is_last[e] = true);
         let mut negative = 0;
-        for e in (0..n).filter(|&e| !is_last[e]) {
-            if x[e].is_nan() || x[e].abs() <= ZERO * diagonal(e) {
+        for (e, pivot) in factors.pivots() {
+            if pivot.is_nan() || pivot.abs() <= ZERO * diagonal(e) {
                 return None;
             }
-            negative += usize::from(x[e] < 0.0);
+            negative += usize::from(pivot < 0.0);
         }
         let mut condensed = vec![0.0; c * c];
         factors.condensed(&mut condensed);
         let mut condensed = DMatrix::from_vec(c, c, condensed);
-        (0..c).for_each(|k| condensed[(k, k)] -= shift);
         let given = |i: usize, j: usize| {
             let (row, column) = (last[i.min(j)], last[i.max(j)]);
             self.pattern
