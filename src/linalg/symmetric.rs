@@ -34,6 +34,9 @@ use std::sync::Arc;
 /// Backward error above which a solution is rejected. Without pivoting, growth must be detected here.
 const BACKWARD_LIMIT: f64 = 1e-12;
 
+/// A diagonal entry of S below this fraction of that of K is round-off.
+const CANCELLED: f64 = 8.0 * f64::EPSILON;
+
 /// Factors of a symmetric matrix, with preallocated memory for repeated factorization.
 pub struct SymmetricFactors {
     /// Pattern of the lower half in elimination order, and the source of each of its entries.
@@ -168,6 +171,16 @@ impl SymmetricFactors {
             }
         }
         largest(sums)
+    }
+
+    /// Whether all digits of a diagonal entry of S cancel.
+    pub fn cancels(&self) -> bool {
+        let nodes = self.l.tail..self.l.nodes.len();
+        self.l.columns(&self.factors, nodes).any(|column| {
+            let slot = self.pattern.slot(column.place, column.place);
+            let given = slot.map_or(0.0, |k| self.values[k]);
+            column.pivot.abs() < CANCELLED * given.abs()
+        })
     }
 
     /// r̃ of a right-hand side, in the order of `last`; [`SymmetricFactors::recover`] continues with it.

@@ -100,7 +100,10 @@ fn the_snapping_arch_fails_in_its_fourth_increment() {
         };
         assert_eq!(event.position.increment, 4);
         assert!(
-            matches!(why, Failure::Cycle(_) | Failure::Diverged { .. }),
+            matches!(
+                why,
+                Failure::Cycle(_) | Failure::Diverged { .. } | Failure::MajorLimit { .. }
+            ),
             "{why:?}"
         );
     }

@@ -557,6 +557,9 @@ impl BodyGroup {
         if !stands {
             let stiffness = &stiffness[self.values.clone()];
             self.factors.factor(stiffness, executor)?;
+            if self.factors.cancels() {
+                return Err(SolveError::Singular);
+            }
             self.factors.condensed(&mut self.schur);
         }
         let residual = &residual[self.equations.clone()];
