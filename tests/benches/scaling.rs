@@ -165,9 +165,7 @@ fn parts(model: &Model, executor: Arc<dyn Executor>) -> (f64, f64) {
         assembly.assemble(dofs, moved, out);
         assembled = assembled.min(began.elapsed().as_secs_f64());
         let began = Instant::now();
-        factors
-            .factor(&values, 1.0, &*executor)
-            .expect("a stiffness");
+        factors.factor(&values, &*executor).expect("a stiffness");
         factored = factored.min(began.elapsed().as_secs_f64());
     }
     (assembled, factored)
