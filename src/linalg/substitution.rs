@@ -20,7 +20,7 @@ pub(super) struct Substitution {
     place: Vec<u32>,
 }
 
-/// Consecutive supernodes: two halves that do not change each other, if it is split, and a top that follows both.
+/// Consecutive supernodes: two halves that do not change each other and a top that follows both; or only a top.
 struct Branch {
     halves: Option<Box<[Branch; 2]>>,
     nodes: Range<usize>,

@@ -27,8 +27,8 @@ use faer::linalg::triangular_solve::solve_unit_lower_triangular_in_place;
 use faer::{Accum, MatMut, MatRef, Par};
 use std::ops::Range;
 
-/// A range of supernodes is split if it takes at least this many multiplications, the first for all supernodes, the next for its halves
-/// and so on, and if this saves at least this fraction of them on two threads. Every split costs a workspace.
+/// A range of supernodes is split if it takes at least this many multiplications, the first for all supernodes, the next for its
+/// halves and so on, and if this saves at least this fraction of them on two threads. Every split costs a workspace.
 const LEAST: [f64; 4] = [1e7, 1e7, 1e9, 1e9];
 const SAVED: f64 = 0.1;
 /// Products with at most this many columns are computed in full, with the unused half.
@@ -115,7 +115,7 @@ impl Subtree {
         };
         let whole = costs.of(&range);
         let mut best = (whole * (1.0 - SAVED), None);
-        let mut top = range.end;
+        let mut top = range.end.min(l.tail);
         while whole >= least && costs.of(&(top..range.end)) < best.0 {
             let mut middle = top;
             while middle > range.start {
@@ -201,7 +201,8 @@ impl Costs {
                 false => 0.0,
             };
             before.push(before[s] + own);
-            if s + 1 - first[s] != size[s] {
+            // What is not eliminated may belong to several subtrees.
+            if s < l.tail && s + 1 - first[s] != size[s] {
                 return None;
             }
             if let Some(parent) = l.parent(s) {

@@ -102,6 +102,11 @@ impl Supernodes {
         }
     }
 
+    /// The supernodes that are not eliminated.
+    pub fn left(&self) -> Range<usize> {
+        self.tail..self.nodes.len()
+    }
+
     /// The range of the values of consecutive supernodes.
     pub fn values(&self, nodes: &Range<usize>) -> Range<usize> {
         let all = &self.nodes[nodes.clone()];

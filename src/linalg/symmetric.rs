@@ -66,7 +66,7 @@ impl SymmetricFactors {
     /// unknowns, from which large matrices get a better elimination order, or empty.
     ///
     /// # Errors
-    /// [`SolveError::OutOfMemory`].
+    /// [`SolveError::OutOfMemory`], also if L has more than 2³¹ entries.
     pub fn new(
         pattern: Arc<Pattern>,
         last: &[usize],
@@ -140,7 +140,8 @@ impl SymmetricFactors {
                 *pivot = node.column(&self.factors, k)[k];
             }
         }
-        self.ready = f64::EPSILON * self.growth() <= BACKWARD_LIMIT * self.size;
+        self.ready =
+            self.size.is_finite() && f64::EPSILON * self.growth() <= BACKWARD_LIMIT * self.size;
         if self.ready {
             Ok(())
         } else {
@@ -148,17 +149,18 @@ impl SymmetricFactors {
         }
     }
 
-    /// Largest sum of the terms |L| |D| |L|ᵀ in a diagonal entry. Without negative pivots it is the entry itself, and is not
-    /// computed.
+    /// Largest sum of the terms |L| |D| |L|ᵀ, and |S|, in a diagonal entry. Without negative entries in D and on the diagonal of S
+    /// it is the entry itself, and is not computed.
     fn growth(&mut self) -> f64 {
         let negative = |d: &f64| d.is_nan() || *d <= 0.0;
-        if !self.pivots.iter().any(negative) {
+        let mut left = self.l.columns(&self.factors, self.l.left());
+        if !self.pivots.iter().any(negative) && !left.any(|column| negative(&column.pivot)) {
             return self.size;
         }
         let sums = &mut self.moved;
         sums.fill(0.0);
-        let nodes = 0..self.l.nodes.len();
-        for column in self.l.columns(&self.factors, nodes) {
+        let all = 0..self.l.nodes.len();
+        for column in self.l.columns(&self.factors, all) {
             let size = column.pivot.abs();
             sums[column.place] += size;
             if column.place >= self.l.inner {
@@ -175,8 +177,8 @@ impl SymmetricFactors {
 
     /// Whether all digits of a diagonal entry of S cancel.
     pub fn cancels(&self) -> bool {
-        let nodes = self.l.tail..self.l.nodes.len();
-        self.l.columns(&self.factors, nodes).any(|column| {
+        let mut left = self.l.columns(&self.factors, self.l.left());
+        left.any(|column| {
             let slot = self.pattern.slot(column.place, column.place);
             let given = slot.map_or(0.0, |k| self.values[k]);
             column.pivot.abs() < CANCELLED * given.abs()
@@ -257,8 +259,7 @@ impl SymmetricFactors {
         let inner = self.l.inner;
         let c = self.order.len() - inner;
         out.fill(0.0);
-        let nodes = self.l.tail..self.l.nodes.len();
-        for column in self.l.columns(&self.factors, nodes) {
+        for column in self.l.columns(&self.factors, self.l.left()) {
             let to = column.place - inner;
             let own = (to + 1..to + 1 + column.own.len()).zip(column.own);
             let rest = column.rows.iter().map(|&row| row as usize - inner);
@@ -351,8 +352,12 @@ mod tests {
             _ => -1.0,
         });
         let stiffness: Vec<f64> = stiffness.collect();
+        let mut one_end = SymmetricFactors::new(pattern.clone(), &[4], &[]).unwrap();
+        one_end.factor(&stiffness, &SequentialExecutor).unwrap();
+        assert!(one_end.cancels(), "it moves as a whole");
         let mut factors = SymmetricFactors::new(pattern, &[0, 4], &[]).unwrap();
         factors.factor(&stiffness, &SequentialExecutor).unwrap();
+        assert!(!factors.cancels());
         let mut out = [0.0; 4];
         factors.condensed(&mut out);
         for (value, exact) in out.iter().zip([0.25, -0.25, -0.25, 0.25]) {
@@ -437,11 +442,18 @@ mod tests {
     fn two_uncoupled_bodies_without_a_common_rest_are_solved() {
         let (pattern, values, positions) = large_grid(SIDE / 2);
         let n = pattern.size();
-        let mut factors = SymmetricFactors::new(pattern, &[], &positions).unwrap();
-        assert!(factors.substitution.is_split_twice());
         let b: Vec<f64> = (0..n).map(|i| (i as f64).cos()).collect();
-        factors.factor(&values, &Threads).unwrap();
-        solve(&mut factors, &b, &Threads).unwrap();
+        // An interface unknown of each follows both.
+        for last in [&[][..], &[0, n - 1]] {
+            let mut factors = SymmetricFactors::new(pattern.clone(), last, &positions).unwrap();
+            assert!(factors.substitution.is_split_twice());
+            factors.factor(&values, &Threads).unwrap();
+            let known = vec![0.0; last.len()];
+            factors.condense(&b, &mut known.clone(), &Threads);
+            factors
+                .recover(&b, &known, &mut vec![0.0; n], &Threads)
+                .unwrap();
+        }
     }
 
     #[test]
@@ -453,11 +465,10 @@ mod tests {
                 .factor(&[-0.1, 1.0, 0.0], &SequentialExecutor)
                 .is_ok()
         );
-        assert!(
-            factors
-                .factor(&[-1e-9, 1.0, 0.0], &SequentialExecutor)
-                .is_err()
-        );
+        for small in [-1e-9, 1e-9] {
+            let grown = factors.factor(&[small, 1.0, 0.0], &SequentialExecutor);
+            assert!(grown.is_err(), "S is large and negative, or positive");
+        }
     }
 
     #[test]

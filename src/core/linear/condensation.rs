@@ -1,7 +1,7 @@
 //! Condenses the bodies to their interface (eqn 6) once per major iteration, with one sparse factorization.
 //!
 //! The interface's unknowns are the displacements of all slave nodes and of all nodes of the surfaces that they may touch. They
-//! are eliminated last, so that the condensed stiffness S is a by-product of the factorization ([`SymmetricFactors`]). With
+//! are not eliminated: what the factorization leaves is the condensed stiffness S ([`SymmetricFactors`]). With
 //! springs of stiffness k between every slave node and its S*, and the gaps z imposed on the springs,
 //!
 //! ```text
@@ -202,7 +202,8 @@ impl Condensation {
     /// ([`FarMasters`]) if that is larger.
     ///
     /// # Errors
-    /// [`SolveError::Singular`] if the stiffness cannot be factored without pivoting.
+    /// [`SolveError::Singular`] if the stiffness cannot be factored without pivoting, or if a diagonal entry of S is round-off: it
+    /// would act as a stiffness.
     pub fn condense(
         &mut self,
         stands: bool,

@@ -10,8 +10,7 @@
 //! The full system is unsymmetric and pivoted: twice the operations and several times the entries; later minor iterations repeat
 //! only the part affected by the changes. Condensation adds dense matrices over the interface: over the c displacements of the
 //! slave nodes and of all nodes of the surfaces that they may touch, and over the z forces of the slave nodes. With m = c − z,
-//! the condensed stiffness needs c³ / 3 operations, the compliance m³ / 3 + m² z, and each minor iteration z³ / 3. All constants
-//! are measured (README).
+//! the compliance needs m³ / 3 + m² z operations, and each minor iteration z³ / 3. All constants are measured (README).
 //!
 //! Contacts with a sparse compliance need memory proportional to its entries, and time proportional to the sweeps over them.
 
@@ -50,7 +49,7 @@ const SPARSE_CONTACT: f64 = 2800.0;
 const SPARSE_ENTRY: f64 = 150.0;
 const SPARSE_SWEEP: f64 = 1.2e-9;
 /// Number of stored matrices over the interface's displacements, and over its forces, for condensation.
-const OVER_DISPLACEMENTS: f64 = 8.0;
+const OVER_DISPLACEMENTS: f64 = 6.0;
 const OVER_FORCES: f64 = 4.0;
 /// Bytes of the program itself.
 const PROGRAM: f64 = 10e6;
@@ -112,7 +111,7 @@ impl Estimate {
         let over_forces = 8.0 * OVER_FORCES * z * z;
         let condensed = if condensable(model) {
             let m = (c - z).max(0.0);
-            let dense = (c.powi(3) + m.powi(3)) / 3.0 + m * m * z;
+            let dense = m.powi(3) / 3.0 + m * m * z;
             Effort {
                 seconds: symmetric.seconds + dense / DENSE + forces,
                 bytes: 8.0 * (symmetric.entries + OVER_DISPLACEMENTS * c * c + c * z) + over_forces,

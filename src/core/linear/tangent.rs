@@ -161,7 +161,7 @@ impl Tangent {
         let (n, c) = (self.pattern.size(), last.len());
         let executor = &*system.executor;
         factors.factor(&self.values, executor).ok()?;
-        // Growth shows in the solution for almost any right-hand side.
+        // Growth in K_ii shows in the solution for almost any right-hand side.
         let (ones, mut x) = (vec![1.0; n], vec![0.0; n]);
         factors.condense(&ones, &mut x[..c], executor);
         let known = &ones[..c];
