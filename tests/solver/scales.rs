@@ -353,7 +353,7 @@ fn check_prints_both_estimates_and_what_does_not_fit_is_refused_before_it_starts
             && text.contains("not condensed: "),
         "{text}"
     );
-    assert!(text.contains(" per major iteration, 4.1 GB"), "{text}");
+    assert!(text.contains(" per major iteration, 3.1 GB"), "{text}");
     for (command, set) in [
         ("run", ["settings.memory=0.02", "settings.solver=auto"]),
         ("check", ["settings.memory=1", "settings.solver=condensed"]),
