@@ -45,6 +45,7 @@ pub mod screen;
 pub mod screenshot;
 mod scroll;
 mod shape_lines;
+mod shape_marks;
 #[cfg(feature = "terminal")]
 pub mod terminal;
 pub mod theme;

@@ -3,12 +3,14 @@
 
 use crate::camera::Camera;
 use crate::canvas::{Canvas, Dot};
+use crate::shape_marks::Marks;
 use crate::theme::Theme;
 use crate::view::View;
 use crate::window::Window;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
 use std::cell::RefCell;
+use std::rc::Rc;
 use std::sync::{Arc, Weak};
 use stickslip_core::SurfaceElement;
 use stickslip_core::fem::lagrange;
@@ -45,6 +47,7 @@ pub(crate) struct ShapeLines {
     reference: Canvas,
     canvas: Canvas,
     window: Window,
+    marks: Rc<Marks>,
 }
 
 /// All that the lines depend on.
@@ -89,16 +92,20 @@ impl LinesSource {
     }
 }
 
-/// The lines in all rows but the last, and the part of the scene that they show.
+/// The lines in all rows but the last, the part of the scene that they show, and the places of marks.
 pub(crate) fn drawn(
     kept: &RefCell<Option<ShapeLines>>,
     inner: Rect,
     look: Look,
     view: &View,
-) -> (Canvas, Window) {
+) -> (Canvas, Window, Rc<Marks>) {
     let source = LinesSource::new(inner, look, view);
+    let load_factor = match view.event() {
+        Some(event) => event.load_factor,
+        None => view.frame().state.load_factor,
+    };
     let mut kept = kept.borrow_mut();
-    let lines = match kept.take() {
+    let mut lines = match kept.take() {
         Some(lines) if lines.source.is(&source) => lines,
         before => {
             let (empty, window) = field(inner, look, view);
@@ -113,13 +120,18 @@ pub(crate) fn drawn(
             ShapeLines {
                 source,
                 reference,
+                marks: Rc::new(Marks::new(&canvas, &window, view, load_factor)),
                 canvas,
                 window,
             }
         }
     };
-    let ShapeLines { canvas, window, .. } = kept.insert(lines);
-    (canvas.clone(), *window)
+    if lines.marks.load_factor != load_factor {
+        let marks = Marks::new(&lines.canvas, &lines.window, view, load_factor);
+        lines.marks = Rc::new(marks);
+    }
+    let lines = kept.insert(lines);
+    (lines.canvas.clone(), lines.window, lines.marks.clone())
 }
 
 /// The canvas, and the part of the scene that it shows.

@@ -11,6 +11,7 @@ use crate::paint;
 use crate::pane_entry::{PaneEntry, frame};
 use crate::run_shape;
 use crate::shape_lines::{self, Look};
+use crate::shape_marks::Marks;
 use crate::theme::Theme;
 use crate::view::View;
 use crate::window::Window;
@@ -20,12 +21,13 @@ use ratatui::style::{Modifier, Style};
 use ratatui::text::{Line, Span};
 use std::collections::HashMap;
 use std::f64::consts::FRAC_PI_4;
+use std::rc::Rc;
 use stickslip_core::{BodyKind, Model, PointDeformation};
 use stickslip_debugger::Examination;
 use stickslip_debugger::action;
-use stickslip_debugger::explain::conditions::{ConditionArrow, Conditions, Given, conditions};
+use stickslip_debugger::explain::conditions::{ConditionArrow, Given};
 use stickslip_debugger::explain::names;
-use stickslip_debugger::explain::outline::{self, Point, outer_nodes};
+use stickslip_debugger::explain::outline::{self};
 use stickslip_debugger::explain::strain;
 use stickslip_scene::number;
 use unicode_width::UnicodeWidthStr;
@@ -44,8 +46,6 @@ const SPARSE: usize = 2;
 const CLEAR: f64 = 4.0;
 /// Cells between two slave nodes from which on their names are written.
 const APART: u16 = 8;
-/// Number of outer nodes that determine the place of a body's name.
-const ENOUGH: usize = 1000;
 /// Arrow heads by eighths of a turn, anticlockwise from the right.
 const HEADS: [&str; 8] = names::ARROWS;
 const DOUBLE_HEADS: [&str; 8] = ["⇒", "⇗", "⇑", "⇖", "⇐", "⇙", "⇓", "⇘"];
@@ -93,14 +93,13 @@ pub fn picture(buffer: &mut Buffer, inner: Rect, app: &App, view: &View) -> Opti
     if inner.is_empty() {
         return None;
     }
-    let (mut canvas, window) = lines(inner, app, view);
-    let given = shown_conditions(view, &window);
-    let (forces, longest) = forces(&window, view);
+    let (mut canvas, window, marks) = lines(inner, app, view);
+    let (forces, longest) = forces(&window, &marks, view);
     let mut tips: HashMap<[u64; 2], Vec<Dot>> = HashMap::new();
     for [tail, tip] in &forces {
         tips.entry(tail.map(f64::to_bits)).or_default().push(*tip);
     }
-    let arrows = given.arrows.iter();
+    let arrows = marks.arrows.iter();
     let arrows: Vec<_> = arrows.map(|one| drawn(one, &tips, &window, app)).collect();
     for (line, style, _) in &arrows {
         canvas.dotted(line[0], line[1], *style, SPARSE);
@@ -114,15 +113,17 @@ pub fn picture(buffer: &mut Buffer, inner: Rect, app: &App, view: &View) -> Opti
     for (line, style, glyphs) in &arrows {
         head(buffer, &canvas, line, (*glyphs, *style));
     }
-    supports(buffer, &canvas, &window, given, app, view);
+    for &(cell, glyph) in &marks.glyphs {
+        paint::label(buffer, cell, glyph, app.theme.good, &app.theme);
+    }
     forces
         .iter()
         .for_each(|line| head(buffer, &canvas, line, (HEADS, style)));
     for line in &motions {
         head(buffer, &canvas, line, (HEADS, app.theme.strong));
     }
-    slaves(buffer, &canvas, &window, app, view);
-    body_names(buffer, &canvas, &window, app, view);
+    slaves(buffer, &canvas, (&window, &marks), app, view);
+    body_names(buffer, &canvas, (&window, &marks), app, view);
     if let Some((x, y)) = view
         .worst_point()
         .and_then(|point| canvas.cell(window.dot(point.at)))
@@ -134,8 +135,8 @@ pub fn picture(buffer: &mut Buffer, inner: Rect, app: &App, view: &View) -> Opti
     Some(Scales { longest, magnified })
 }
 
-/// The lines, and the part of the scene that they show.
-fn lines(inner: Rect, app: &App, view: &View) -> (Canvas, Window) {
+/// The lines, the part of the scene that they show, and the places of marks.
+fn lines(inner: Rect, app: &App, view: &View) -> (Canvas, Window, Rc<Marks>) {
     let look = Look {
         camera: &app.camera,
         theme: &app.theme,
@@ -152,13 +153,13 @@ pub fn slave_at(area: Rect, app: &App, view: &View, at: Position) -> Option<usiz
     if inner.is_empty() {
         return None;
     }
-    let (canvas, window) = lines(inner, app, view);
-    view.model
-        .contacts
+    let (canvas, window, marks) = lines(inner, app, view);
+    marks
+        .slaves
         .iter()
         .enumerate()
-        .filter_map(|(slave, contact)| {
-            let (x, y) = canvas.cell(window.dot(window.place(view, contact.node)))?;
+        .filter_map(|(slave, &place)| {
+            let (x, y) = canvas.cell(window.dot(place))?;
             let far = u32::from(x.abs_diff(at.x)) + 2 * u32::from(y.abs_diff(at.y));
             (far <= NEAR).then_some((far, slave))
         })
@@ -167,21 +168,23 @@ pub fn slave_at(area: Rect, app: &App, view: &View, at: Position) -> Option<usiz
 }
 
 /// Names of the bodies if there are several and they fit: in the middle of a solid, next to a beam.
-fn body_names(buffer: &mut Buffer, canvas: &Canvas, window: &Window, app: &App, view: &View) {
+fn body_names(
+    buffer: &mut Buffer,
+    canvas: &Canvas,
+    (window, marks): (&Window, &Marks),
+    app: &App,
+    view: &View,
+) {
     if view.model.bodies.len() < 2 {
         return;
     }
     let area = canvas.area();
-    for body in &view.model.bodies {
+    for (body, &at) in view.model.bodies.iter().zip(&marks.bodies) {
         let name = paint::cut(&body.name, 12);
         let wide = name.width() as u16;
-        let (at, aside) = match &body.kind {
-            BodyKind::Solid(_) | BodyKind::Linear(_) | BodyKind::Truss(_) => {
-                let step = 1 + outer_nodes(body).count() / ENOUGH;
-                let nodes = outer_nodes(body).step_by(step);
-                (mean(nodes, window, view), -i32::from(wide / 2))
-            }
-            BodyKind::Beam(_) => (window.place(view, body.nodes[body.nodes.len() / 2]), 2),
+        let aside = match &body.kind {
+            BodyKind::Beam(_) => 2,
+            _ => -i32::from(wide / 2),
         };
         let Some((x, y)) = canvas.cell(window.dot(at)) else {
             continue;
@@ -215,18 +218,8 @@ fn gives_way(cell: &Cell) -> bool {
     cell.symbol() == " " || (is_line && cell.modifier.contains(Modifier::DIM))
 }
 
-/// Mean position of nodes.
-fn mean(nodes: impl Iterator<Item = usize>, window: &Window, view: &View) -> Point {
-    let (sum, count) = nodes
-        .map(|node| window.place(view, node))
-        .fold(([0.0; 2], 0.0), |(s, count), p| {
-            ([s[0] + p[0], s[1] + p[1]], count + 1.0)
-        });
-    sum.map(|x| x / count)
-}
-
 /// Contact forces on the slave nodes as lines from the node in the direction in which the master pushes it, and the largest.
-fn forces(window: &Window, view: &View) -> (Vec<[Dot; 2]>, f64) {
+fn forces(window: &Window, marks: &Marks, view: &View) -> (Vec<[Dot; 2]>, f64) {
     let Some(event) = view.event() else {
         return (Vec::new(), 0.0);
     };
@@ -239,29 +232,18 @@ fn forces(window: &Window, view: &View) -> (Vec<[Dot; 2]>, f64) {
         .filter(|f| f.is_finite())
         .fold(0.0, f64::max);
     let scale = FORCE * window.extent / largest;
-    let lines = view
-        .model
-        .contacts
+    let lines = marks
+        .slaves
         .iter()
         .zip(&event.nodes)
         .enumerate()
         .filter(|(_, (_, node))| size(node.f_n, node.f_t) > 0.0)
-        .map(|(slave, (contact, _))| {
+        .map(|(slave, (&tail, _))| {
             let force = window.projection.force(view.model, event, slave);
-            let tail = window.place(view, contact.node);
             let tip = [0, 1].map(|axis| tail[axis] + scale * force[axis]);
             [window.dot(tail), window.dot(tip)]
         });
     (lines.collect(), largest)
-}
-
-/// Supports, loads and prescribed motions.
-fn shown_conditions(view: &View, window: &Window) -> Conditions {
-    let load_factor = match view.event() {
-        Some(event) => event.load_factor,
-        None => view.frame().state.load_factor,
-    };
-    conditions(view.model, load_factor, &|node| window.place(view, node))
 }
 
 /// The line of a load, which ends at its node, or of a prescribed motion, which starts there; its style and its heads. It is drawn
@@ -293,44 +275,6 @@ fn beside([from, to]: [Dot; 2]) -> [Dot; 2] {
     let length = x.hypot(y).max(1e-300).copysign(-x);
     let aside = [-y, x].map(|part| CLEAR * part / length);
     [from, to].map(|[x, y]| [x + aside[0], y + aside[1]])
-}
-
-/// Supports: a triangle for a restrained component, a filled one for both, a square if the rotation is restrained as well; moments
-/// and prescribed rotations as turns.
-fn supports(
-    buffer: &mut Buffer,
-    canvas: &Canvas,
-    window: &Window,
-    found: Conditions,
-    app: &App,
-    view: &View,
-) {
-    let facts = view.facts();
-    let supports = facts.supports.iter().map(|&(node, held)| {
-        let glyph = match held {
-            [true, true, true] => "■",
-            [true, true, false] => "▲",
-            [true, false, _] => "▷",
-            [false, true, _] => "△",
-            [false, false, _] => "◇",
-        };
-        (node, glyph)
-    });
-    let turns = found
-        .turns
-        .into_iter()
-        .map(|(node, _, left)| if left { (node, "↺") } else { (node, "↻") });
-    let marks = supports.chain(turns).filter_map(|(node, glyph)| {
-        let at = canvas.cell(window.dot(window.place(view, node)))?;
-        Some((at, glyph))
-    });
-    let mut last = None;
-    for mark in marks {
-        // Of a fine mesh many nodes are in one cell.
-        if last.replace(mark) != Some(mark) {
-            paint::label(buffer, mark.0, mark.1, app.theme.good, &app.theme);
-        }
-    }
 }
 
 /// The diagnosis, if the solve fails in the shown state.
@@ -379,21 +323,21 @@ fn head(
 }
 
 /// Letters of the modes at the slave nodes; the selected node is reversed. A node that is far enough from the others is named.
-fn slaves(buffer: &mut Buffer, canvas: &Canvas, window: &Window, app: &App, view: &View) {
+fn slaves(
+    buffer: &mut Buffer,
+    canvas: &Canvas,
+    (window, marks): (&Window, &Marks),
+    app: &App,
+    view: &View,
+) {
     let theme = &app.theme;
     let selected = app.slave(view);
-    let others = (0..view.model.contacts.len()).filter(|slave| *slave != selected);
-    let seen: Vec<(u16, u16)> = (0..view.model.contacts.len())
-        .filter_map(|slave| {
-            let node = view.model.contacts.get(slave)?.node;
-            canvas.cell(window.dot(window.place(view, node)))
-        })
-        .collect();
+    let places = marks.slaves.iter();
+    let cells: Vec<_> = places.map(|&at| canvas.cell(window.dot(at))).collect();
+    let seen = || cells.iter().flatten();
+    let others = (0..cells.len()).filter(|slave| *slave != selected);
     for slave in others.chain([selected]) {
-        let Some(node) = view.model.contacts.get(slave).map(|slave| slave.node) else {
-            return;
-        };
-        let Some((x, y)) = canvas.cell(window.dot(window.place(view, node))) else {
+        let Some(&Some((x, y))) = cells.get(slave) else {
             continue;
         };
         // The mode in which the drawn forces were found.
@@ -407,9 +351,8 @@ fn slaves(buffer: &mut Buffer, canvas: &Canvas, window: &Window, app: &App, view
         paint::label(buffer, (x, y), action::letter(mode), style, theme);
         let right = (x + 1, y);
         if app.camera.zoom > 1.0
-            && seen
-                .iter()
-                .filter(|&(a, b)| a.abs_diff(x) < APART && b.abs_diff(y) < 2)
+            && seen()
+                .filter(|&&(a, b)| a.abs_diff(x) < APART && b.abs_diff(y) < 2)
                 .count()
                 == 1
         {
