@@ -1,6 +1,7 @@
 //! Patterns of sparse matrices, and matrix-vector products.
 
 use super::check::SolveError;
+use super::executor::{Executor, each};
 use faer::sparse::SymbolicSparseColMatRef;
 use std::ops::Range;
 
@@ -30,13 +31,9 @@ impl Pattern {
         col_ptr.push(0);
         let mut end = 0;
         for range in starts.windows(2) {
-            rows[range[0]..range[1]].sort_unstable();
-            for k in range[0]..range[1] {
-                if k == range[0] || rows[k] != rows[end - 1] {
-                    rows[end] = rows[k];
-                    end += 1;
-                }
-            }
+            let count = sort_distinct(&mut rows[range[0]..range[1]]);
+            rows.copy_within(range[0]..range[0] + count, end);
+            end += count;
             col_ptr.push(narrow(end)?);
         }
         rows.truncate(end);
@@ -45,6 +42,73 @@ impl Pattern {
             n,
             col_ptr,
             row_idx: rows,
+        })
+    }
+
+    /// The upper half of the pattern of n unknowns that are coupled within lists of ascending ones, with the whole diagonal;
+    /// `starts` are those of the lists in `coupled`, and its length.
+    ///
+    /// # Errors
+    /// [`SolveError::OutOfMemory`] if an index needs more than four bytes.
+    pub fn upper_from_lists(
+        n: usize,
+        (starts, coupled): (&[usize], &[u32]),
+        executor: &dyn Executor,
+    ) -> Result<Self, SolveError> {
+        /// Columns that one thread finds together.
+        const TOGETHER: usize = 4096;
+        narrow(n)?;
+        let list = |k: usize| &coupled[starts[k]..starts[k + 1]];
+        let numbers = 0..starts.len() - 1;
+        let (first, lists_of) = lists(n, || {
+            let members = |k: usize| list(k).iter().map(move |&i| (i as usize, k as u32));
+            numbers.clone().flat_map(members)
+        });
+        let lists_of = |column: usize| &lists_of[first[column]..first[column + 1]];
+        // The number of rows of each column, and the rows.
+        type Part = (Range<usize>, Vec<usize>, Vec<u32>);
+        let range = |start| start..n.min(start + TOGETHER);
+        let part = |start| (range(start), Vec::new(), Vec::new());
+        let mut parts: Vec<Part> = (0..n).step_by(TOGETHER).map(part).collect();
+        each(executor, &mut parts, &|(columns, counts, rows)| {
+            for column in columns.clone() {
+                let (start, own) = (rows.len(), lists_of(column));
+                match counts.last() {
+                    // As the column before, with one more row.
+                    Some(before) if !own.is_empty() && own == lists_of(column - 1) => {
+                        rows.extend_from_within(start - before..);
+                        rows.push(column as u32);
+                    }
+                    _ => {
+                        rows.push(column as u32);
+                        for &k in own {
+                            let above = list(k as usize)
+                                .iter()
+                                .take_while(|&&row| row as usize <= column);
+                            rows.extend(above);
+                        }
+                        let end = start + sort_distinct(&mut rows[start..]);
+                        rows.truncate(end);
+                    }
+                }
+                counts.push(rows.len() - start);
+            }
+        });
+        let (mut col_ptr, mut row_idx) = (Vec::with_capacity(n + 1), Vec::new());
+        row_idx.reserve_exact(parts.iter().map(|(.., rows)| rows.len()).sum());
+        let mut end = 0;
+        col_ptr.push(0);
+        for (_, counts, rows) in parts {
+            row_idx.extend(rows);
+            for count in counts {
+                end += count;
+                col_ptr.push(narrow(end)?);
+            }
+        }
+        Ok(Pattern {
+            n,
+            col_ptr,
+            row_idx,
         })
     }
 
@@ -123,6 +187,57 @@ impl Pattern {
         (pattern, from)
     }
 
+    /// The rows below the diagonal of a column.
+    fn below(&self, column: usize) -> &[u32] {
+        let rows = &self.row_idx[self.column(column)];
+        &rows[rows.partition_point(|&row| row as usize <= column)..]
+    }
+
+    /// For a symmetric matrix's lower half: groups of consecutive unknowns that are coupled to the same others, as the first of
+    /// each, and the number of unknowns at the end. None contains unknowns on both sides of `border`.
+    pub(super) fn groups(&self, border: usize) -> Vec<usize> {
+        // By unknown: earlier columns with its row, and those also with the row before.
+        let (mut own, mut both) = (vec![0_u32; self.n], vec![0_u32; self.n]);
+        for column in 0..self.n {
+            let rows = self.below(column);
+            rows.iter().for_each(|&row| own[row as usize] += 1);
+            for pair in rows.windows(2) {
+                both[pair[1] as usize] += u32::from(pair[0] + 1 == pair[1]);
+            }
+        }
+        let follows = |k: &usize| {
+            let k = *k;
+            let same = || self.below(k - 1).strip_prefix(&[k as u32]) == Some(self.below(k));
+            k != border && own[k - 1] == both[k] && own[k] == both[k] + 1 && same()
+        };
+        let first = (0..self.n.min(1)).chain((1..self.n).filter(|k| !follows(k)));
+        first.chain([self.n]).collect()
+    }
+
+    /// The lower half of the pattern of these groups.
+    pub(super) fn of_groups(&self, groups: &[usize]) -> Pattern {
+        let mut number = vec![0_u32; self.n];
+        for (group, range) in (0..).zip(groups.windows(2)) {
+            number[range[0]..range[1]].fill(group);
+        }
+        let (mut col_ptr, mut row_idx) = (vec![0], Vec::new());
+        for (group, range) in (0..).zip(groups.windows(2)) {
+            row_idx.push(group);
+            for &row in self.below(range[1] - 1) {
+                let other = number[row as usize];
+                if row_idx.last() != Some(&other) {
+                    row_idx.push(other);
+                }
+            }
+            col_ptr.push(row_idx.len() as u32);
+        }
+        Pattern {
+            n: groups.len() - 1,
+            col_ptr,
+            row_idx,
+        }
+    }
+
     /// The transposed pattern.
     pub(super) fn transposed(&self) -> Pattern {
         let (starts, row_idx) = lists(self.n, || self.iter().map(|(row, col)| (row, col as u32)));
@@ -186,6 +301,19 @@ impl Pattern {
     }
 }
 
+/// Sorts rows and moves the first of each to the front; returns their number.
+fn sort_distinct(rows: &mut [u32]) -> usize {
+    rows.sort_unstable();
+    let mut count = 0;
+    for k in 0..rows.len() {
+        if k == 0 || rows[k] != rows[count - 1] {
+            rows[count] = rows[k];
+            count += 1;
+        }
+    }
+    count
+}
+
 /// Sum of the terms of values and their rows, in four parts that do not wait for each other.
 pub(super) fn sum_of(values: &[f64], rows: &[u32], term: impl Fn(f64, usize) -> f64) -> f64 {
     const PARTS: usize = 4;
@@ -242,6 +370,7 @@ pub(super) fn symbolic_view(pattern: &Pattern) -> SymbolicSparseColMatRef<'_, u3
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::executor::Threads;
 
     #[test]
     fn uncoupled_blocks_are_found() {
@@ -262,6 +391,50 @@ mod tests {
         assert_eq!(Ok(block), expected);
         let all: Vec<_> = pattern.iter().collect();
         assert_eq!(all[values], [(4, 4), (4, 5), (5, 5)]);
+    }
+
+    #[test]
+    fn the_pattern_of_lists_is_that_of_their_pairs() {
+        // Across the border of two parts, with a list of one, an empty one and unknowns in no list.
+        let lists: [&[u32]; 6] = [
+            &[0, 1, 4095, 4096],
+            &[4094, 4095, 4096, 4097],
+            &[7],
+            &[],
+            &[4096, 4097, 4098],
+            &[1, 4098, 4099],
+        ];
+        let starts = lists.iter().scan(0, |end, list| {
+            *end += list.len();
+            Some(*end)
+        });
+        let starts: Vec<usize> = [0].into_iter().chain(starts).collect();
+        let coupled = lists.concat();
+        let found = Pattern::upper_from_lists(5000, (&starts, &coupled), &Threads).unwrap();
+        let pairs = lists.iter().flat_map(|list| {
+            let pair = |&i: &u32| list.iter().map(move |&j| (i as usize, j as usize));
+            list.iter().flat_map(pair)
+        });
+        let pairs = pairs.filter(|(i, j)| i <= j);
+        let pairs = pairs.chain((0..5000).map(|i| (i, i)));
+        assert!(Ok(found) == Pattern::new(5000, pairs));
+    }
+
+    #[test]
+    fn unknowns_coupled_to_the_same_others_are_in_a_group() {
+        // Nodes of two unknowns in a row, of which the last has one.
+        let coupled = |i: usize, j: usize| (j / 2).abs_diff(i / 2) <= 1;
+        let entries = (0..7).flat_map(|j| (j..7).map(move |i| (i, j)));
+        let pattern = Pattern::new(7, entries.filter(|&(i, j)| coupled(i, j))).unwrap();
+        assert_eq!(pattern.groups(4), [0, 2, 4, 6, 7]);
+        assert_eq!(pattern.groups(3), [0, 2, 3, 4, 6, 7]);
+        let chain = [(0, 0), (1, 0), (1, 1), (2, 1), (2, 2), (3, 2), (3, 3)];
+        let chain = Pattern::new(4, chain.into_iter());
+        assert_eq!(Ok(pattern.of_groups(&[0, 2, 4, 6, 7])), chain);
+        assert_eq!(chain.unwrap().groups(4), [0, 1, 2, 3, 4]);
+        let alone = Pattern::new(2, [(0, 0), (1, 1)].into_iter()).unwrap();
+        assert_eq!(alone.groups(2), [0, 1, 2]);
+        assert_eq!(Pattern::new(0, [].into_iter()).unwrap().groups(0), [0]);
     }
 
     #[test]

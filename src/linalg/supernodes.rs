@@ -56,14 +56,20 @@ impl Supernode {
 }
 
 impl Supernodes {
-    /// The first `inner` unknowns are eliminated; a supernode that contains some of them is split there.
-    pub fn from_symbolic(symbolic: &SymbolicSupernodalCholesky<u32>, inner: usize) -> Self {
+    /// From those of `groups` of unknowns ([`super::pattern::Pattern::groups`]). The first `inner` unknowns are eliminated; a
+    /// supernode that contains some of them is split there.
+    pub fn from_symbolic(
+        symbolic: &SymbolicSupernodalCholesky<u32>,
+        groups: &[usize],
+        inner: usize,
+    ) -> Self {
         let mut nodes: Vec<Supernode> = Vec::with_capacity(symbolic.n_supernodes() + 1);
-        let mut node_of = vec![0; symbolic.nrows()];
+        let mut node_of = vec![0; groups[symbolic.nrows()]];
         let mut rows: Vec<u32> = Vec::new();
         for s in 0..symbolic.n_supernodes() {
             let node = symbolic.supernode(s);
-            let (start, end) = (node.start(), symbolic.supernode_end()[s] as usize);
+            let end = symbolic.supernode_end()[s] as usize;
+            let (start, end) = (groups[node.start()], groups[end]);
             let middle = inner.clamp(start, end);
             for columns in [start..middle, middle..end] {
                 if columns.is_empty() {
@@ -71,7 +77,10 @@ impl Supernodes {
                 }
                 let first = rows.len();
                 rows.extend(columns.end as u32..end as u32);
-                rows.extend(node.pattern());
+                for &group in node.pattern() {
+                    let group = group as usize;
+                    rows.extend(groups[group] as u32..groups[group + 1] as u32);
+                }
                 node_of[columns.clone()].fill(nodes.len() as u32);
                 let values = nodes.last().map_or(0, |node| node.values.end);
                 let height = columns.len() + rows.len() - first;

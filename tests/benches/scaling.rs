@@ -14,7 +14,7 @@ use std::time::Instant;
 use stickslip::executor::{Executor, SequentialExecutor};
 use stickslip::fem::assembly::{Assembly, AssemblyMotion};
 use stickslip::fem::element::ElementOutput;
-use stickslip::linalg::{Pattern, SymmetricFactors};
+use stickslip::linalg::SymmetricFactors;
 use stickslip::model::Model;
 use stickslip::scene::Scene;
 use stickslip::step::event::Outcome;
@@ -127,8 +127,8 @@ fn row(model: &Arc<Model>) {
 fn parts(model: &Model, executor: Arc<dyn Executor>) -> (f64, f64) {
     let (dofs, equations) = (&model.dofs, model.dofs.equations);
     let mut assembly = Assembly::with_executor(model, executor.clone());
-    let entries = assembly.upper_entries(dofs);
-    let pattern = Arc::new(Pattern::new(equations, entries).expect("a pattern that fits"));
+    let pattern = assembly.upper_pattern(dofs).expect("a pattern that fits");
+    let pattern = Arc::new(pattern);
     assembly.bind(dofs, &pattern, true);
     let masters = model
         .surfaces

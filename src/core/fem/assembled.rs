@@ -91,12 +91,23 @@ impl AssembledElement {
         }
     }
 
-    pub(super) fn scatter(&self, force: &[f64], tangent: &[f64], sums: &mut AssemblySums<'_>) {
+    /// The range of its degrees of freedom.
+    pub(super) fn span(&self) -> Range<usize> {
+        let start = self.dofs.iter().min().map_or(0, |least| *least);
+        start..self.dofs.iter().max().map_or(0, |most| most + 1)
+    }
+
+    pub(super) fn add_forces(&self, force: &[f64], sums: &mut AssemblySums<'_>) {
         let (first, out) = (sums.first, &mut sums.out);
         for (&d, force) in self.dofs.iter().zip(force) {
             out.force[d - first.dof] += force;
             out.size[d - first.dof] += force.abs();
         }
+    }
+
+    /// Adds the tangent.
+    pub(super) fn scatter(&self, tangent: &[f64], sums: &mut AssemblySums<'_>) {
+        let (first, out) = (sums.first, &mut sums.out);
         let n = self.dofs.len();
         let is_half = self.slots.len() < n * n;
         let mut slots = self.slots.iter();
@@ -153,14 +164,23 @@ impl AssemblySums<'_> {
         }
     }
 
-    /// Splits the sums at given start indices.
+    pub(super) fn clear(&mut self) {
+        let out = &mut self.out;
+        for sums in [&mut *out.force, out.size, out.values, out.coupling] {
+            sums.fill(0.0);
+        }
+    }
+
+    /// Splits the sums at given start indices; entries and coupling may be empty.
     pub(super) fn split_at(&mut self, at: ScatterMap) -> (AssemblySums<'_>, AssemblySums<'_>) {
         let first = self.first;
         let out = &mut self.out;
         let force = out.force.split_at_mut(at.dof - first.dof);
         let size = out.size.split_at_mut(at.dof - first.dof);
-        let values = out.values.split_at_mut(at.slot - first.slot);
-        let coupling = out.coupling.split_at_mut(at.equation - first.equation);
+        let values = (at.slot - first.slot).min(out.values.len());
+        let values = out.values.split_at_mut(values);
+        let coupling = (at.equation - first.equation).min(out.coupling.len());
+        let coupling = out.coupling.split_at_mut(coupling);
         let sums = |first, force, size, values, coupling| AssemblySums {
             first,
             out: ElementOutput {

@@ -1,8 +1,8 @@
 //! Assembles the bodies' internal forces and tangent stiffness (the K_s and K_m of eqn 5).
 //!
-//! The position of every entry of every element matrix is found once; assembly then only adds. Bodies with separate ranges of
-//! entries are assembled in parallel ([`Executor`]), and so are the responses of many elements of one body. Each element adds to the
-//! same entries in the same order, independent of the executor.
+//! The position of every entry of every element matrix is found once; assembly then only adds. Many elements are split at a degree
+//! of freedom into those before it and those after it, which share no entries and are assembled in parallel ([`Executor`]), and
+//! those across it, which follow. Each entry is added to in the same order with any executor.
 
 use crate::executor::{Executor, SequentialExecutor, each};
 pub use crate::fem::assembled::AssemblyMotion;
@@ -14,14 +14,16 @@ use crate::fem::isoparametric;
 use crate::fem::matrix;
 use crate::fem::small;
 use crate::fem::truss;
-use crate::linalg::Pattern;
+use crate::linalg::{Pattern, SolveError};
 use crate::model::{Beam, Body, BodyKind, Dofs, Solid, SolidElement, Truss};
 use crate::{ElementOutput, Material, Model};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// A group of at least `MANY` elements is computed in batches of `BATCH` elements, of which `TOGETHER` are computed by one thread.
+/// A group of at least `MANY` elements is split if at most the fraction 1 / `ACROSS` of them follows both halves. Otherwise it is
+/// computed in batches of `BATCH` elements, of which `TOGETHER` are computed by one thread.
 const MANY: usize = 1000;
+const ACROSS: usize = 4;
 const BATCH: usize = 128;
 const TOGETHER: usize = 16;
 
@@ -37,8 +39,8 @@ pub struct Assembly {
     half: bool,
     /// Number of history variables of the elements added so far.
     history_len: usize,
-    /// Consecutive elements with separate ranges of entries; together all elements.
-    groups: Vec<Group>,
+    /// All elements.
+    group: Group,
     /// Runs the assembly.
     executor: Arc<dyn Executor>,
     room: Workspace,
@@ -56,9 +58,13 @@ struct Workspace {
     answers: bool,
 }
 
-/// Elements that are assembled independently.
+/// Elements that are assembled together.
+#[derive(Default)]
 struct Group {
-    elements: Range<usize>,
+    /// Two groups without common degrees of freedom, assembled first.
+    halves: Option<Box<[Group; 2]>>,
+    /// Numbers of the elements that follow.
+    elements: Vec<u32>,
     /// First degree of freedom, entry and equation of the group.
     first: ScatterMap,
     /// One for each element of a batch.
@@ -79,7 +85,7 @@ impl Assembly {
             matrices: Vec::new(),
             half: false,
             history_len: 0,
-            groups: Vec::new(),
+            group: Group::default(),
             executor,
             room: Workspace::default(),
             memory: Vec::new(),
@@ -179,51 +185,42 @@ impl Assembly {
         of_elements.chain(matrices.flat_map(|matrix| matrix.entries(dofs)))
     }
 
-    /// Those of [`Assembly::entries`] in the upper half.
-    pub fn upper_entries<'a>(
-        &'a self,
-        dofs: &'a Dofs,
-    ) -> impl Iterator<Item = (usize, usize)> + Clone + 'a {
-        let of_elements = self.elements.iter().flat_map(|placed| {
-            let equations = placed.dofs.iter().filter_map(|&d| dofs.equation[d]);
-            let mut equations: Vec<usize> = equations.collect();
-            equations.sort_unstable();
-            let (mut row, mut column) = (0, 0);
-            std::iter::from_fn(move || {
-                let entry = (*equations.get(row)?, *equations.get(column)?);
-                (row, column) = match row == column {
-                    true => (0, column + 1),
-                    false => (row + 1, column),
-                };
-                Some(entry)
-            })
-        });
-        let matrices = self.matrices.iter();
-        let entries = matrices.flat_map(|matrix| matrix.entries(dofs));
-        of_elements.chain(entries.filter(|(row, column)| row <= column))
+    /// The pattern of the upper half, in equations, with the whole diagonal.
+    ///
+    /// # Errors
+    /// [`SolveError::OutOfMemory`].
+    pub fn upper_pattern(&self, dofs: &Dofs) -> Result<Pattern, SolveError> {
+        let (mut starts, mut coupled) = (vec![0], Vec::new());
+        let mut list = |equations: &mut dyn Iterator<Item = usize>| {
+            let start = coupled.len();
+            coupled.extend(equations.map(|equation| equation as u32));
+            coupled[start..].sort_unstable();
+            starts.push(coupled.len());
+        };
+        for placed in &self.elements {
+            list(&mut placed.dofs.iter().filter_map(|&d| dofs.equation[d]));
+        }
+        for (row, column) in self.matrices.iter().flat_map(|m| m.entries(dofs)) {
+            list(&mut [row, column].into_iter());
+        }
+        Pattern::upper_from_lists(dofs.equations, (&starts, &coupled), &*self.executor)
     }
 
     /// Looks up every entry in a pattern that contains them all, or, for a symmetric stiffness, those of the upper `half`.
     pub fn bind(&mut self, dofs: &Dofs, pattern: &Pattern, half: bool) {
-        let whole = 0..pattern.size();
-        self.bind_parts(dofs, pattern, half, std::slice::from_ref(&whole));
-    }
-
-    /// The same if no element has entries in more than one of these `parts` of the equations, which are assembled in parallel.
-    pub fn bind_parts(
-        &mut self,
-        dofs: &Dofs,
-        pattern: &Pattern,
-        half: bool,
-        parts: &[Range<usize>],
-    ) {
         self.half = half;
-        let groups = self.groups_of(dofs, pattern, parts);
-        self.groups = groups.unwrap_or_else(|| vec![self.whole()]);
-        for group in &mut self.groups {
-            let many = group.elements.len() >= MANY;
-            group.rooms = vec![self.room.clone(); if many { BATCH } else { 1 }];
-        }
+        let spans: Vec<Range<usize>> = self.elements.iter().map(AssembledElement::span).collect();
+        let all = (0..self.elements.len() as u32).collect();
+        let start = |dof: usize| {
+            let equation = dofs.equation[dof..].iter().flatten().next();
+            let equation = equation.map_or(dofs.equations, |e| *e);
+            ScatterMap {
+                dof,
+                slot: pattern.start(equation),
+                equation,
+            }
+        };
+        self.group = Group::new(all, ScatterMap::default(), &spans, &start, &self.room);
         let mut batches: Vec<_> = self.elements.chunks_mut(MANY).collect();
         each(&*self.executor, &mut batches, &|batch| {
             batch
@@ -237,64 +234,31 @@ impl Assembly {
         self.held = held.map(|k| (k, Vec::new())).collect();
     }
 
-    /// All elements.
-    fn whole(&self) -> Group {
-        Group {
-            elements: 0..self.elements.len(),
-            first: ScatterMap::default(),
-            rooms: Vec::new(),
-        }
-    }
-
-    /// One group of elements per part of the equations; `None` if their entries are not separate and in the same order.
-    fn groups_of(
-        &self,
-        dofs: &Dofs,
-        pattern: &Pattern,
-        parts: &[Range<usize>],
-    ) -> Option<Vec<Group>> {
-        let mut groups: Vec<Group> = Vec::with_capacity(parts.len());
-        // The part of the last element, and the degrees of freedom reached so far.
-        let (mut at, mut reach) = (0, 0);
-        for (k, placed) in self.elements.iter().enumerate() {
-            let least = placed.dofs.iter().copied().min()?;
-            let equation = placed.dofs.iter().find_map(|&d| dofs.equation[d]);
-            let part = equation.map_or(Some(at), |e| parts.iter().position(|p| p.contains(&e)))?;
-            if groups.is_empty() || part > at {
-                // There are no parts if every degree of freedom is restrained.
-                let start = parts.get(part)?.start;
-                if least < reach {
-                    return None;
-                }
-                groups.push(Group {
-                    elements: k..k,
-                    first: ScatterMap {
-                        dof: if k == 0 { 0 } else { least },
-                        slot: pattern.start(start),
-                        equation: start,
-                    },
-                    rooms: Vec::new(),
-                });
-            }
-            let group = groups.last_mut()?;
-            if part < at || least < group.first.dof {
-                return None;
-            }
-            group.elements.end = k + 1;
-            (at, reach) = (part, reach.max(placed.dofs.iter().max()? + 1));
-        }
-        // Entries without an element belong to the first group.
-        groups.first_mut()?.first = ScatterMap::default();
-        Some(groups)
-    }
-
     /// Internal forces and tangent.
     pub fn assemble(&mut self, dofs: &Dofs, moved: AssemblyMotion<'_>, mut out: ElementOutput<'_>) {
-        out.force.fill(0.0);
-        out.size.fill(0.0);
-        out.values.fill(0.0);
-        out.coupling.fill(0.0);
         self.held.iter_mut().for_each(|(_, known)| known.clear());
+        self.add(Some(dofs), moved, &mut out);
+        for matrix in &self.matrices {
+            matrix.add(dofs, moved.u, moved.step, &mut out);
+        }
+    }
+
+    /// Internal forces only, with the same bits as [`Assembly::assemble`].
+    pub fn resist(&mut self, moved: AssemblyMotion<'_>, force: &mut [f64], size: &mut [f64]) {
+        let mut out = ElementOutput {
+            force,
+            size,
+            values: &mut [],
+            coupling: &mut [],
+        };
+        self.add(None, moved, &mut out);
+        for matrix in &self.matrices {
+            matrix.resist(moved.u, out.force, out.size);
+        }
+    }
+
+    /// Adds all elements; the tangents too with the equations of the degrees of freedom.
+    fn add(&mut self, dofs: Option<&Dofs>, moved: AssemblyMotion<'_>, out: &mut ElementOutput<'_>) {
         let work = AssemblyWork {
             executor: &*self.executor,
             elements: &self.elements,
@@ -311,41 +275,7 @@ impl Assembly {
                 coupling: &mut *out.coupling,
             },
         };
-        work.all(&mut self.groups, sums);
-        for matrix in &self.matrices {
-            matrix.add(dofs, moved.u, moved.step, &mut out);
-        }
-    }
-
-    /// Internal forces only, with the same bits as [`Assembly::assemble`].
-    pub fn resist(&mut self, moved: AssemblyMotion<'_>, force: &mut [f64], size: &mut [f64]) {
-        force.fill(0.0);
-        size.fill(0.0);
-        let compute = |placed: &AssembledElement, room: &mut Workspace| {
-            room.compute(placed, &moved, |past, u, force, tangent| {
-                placed.element.resist(past, u, force, tangent)
-            });
-        };
-        let mut add = |placed: &AssembledElement, room: &Workspace| {
-            for (&d, own) in placed.dofs.iter().zip(&room.force) {
-                // No finite force is in balance if an element has no response.
-                force[d] += if room.answers { *own } else { f64::INFINITY };
-                size[d] += if room.answers { own.abs() } else { 0.0 };
-            }
-        };
-        for group in &mut self.groups {
-            let elements = &self.elements[group.elements.clone()];
-            in_batches(
-                &*self.executor,
-                elements,
-                &mut group.rooms,
-                &compute,
-                &mut add,
-            );
-        }
-        for matrix in &self.matrices {
-            matrix.resist(moved.u, force, size);
-        }
+        work.all(&mut self.group, sums);
     }
 
     /// Forces at the equations due to `step` of the degrees of freedom without an equation, as in [`Assembly::assemble`], which
@@ -401,30 +331,32 @@ struct AssemblyWork<'a> {
     executor: &'a dyn Executor,
     elements: &'a [AssembledElement],
     half: bool,
-    dofs: &'a Dofs,
+    /// `None` if only forces are assembled.
+    dofs: Option<&'a Dofs>,
     moved: AssemblyMotion<'a>,
 }
 
 impl AssemblyWork<'_> {
-    /// Assembles these groups.
-    fn all(self, groups: &mut [Group], mut sums: AssemblySums<'_>) {
-        match groups {
-            [] => {}
-            [group] => self.group(group, &mut sums),
-            _ => {
-                let (left, right) = groups.split_at_mut(groups.len() / 2);
-                let (mut before, mut after) = sums.split_at(right[0].first);
-                self.executor
-                    .join(&mut || self.all(&mut *left, before.reborrow()), &mut || {
-                        self.all(&mut *right, after.reborrow())
-                    });
-            }
+    /// Assembles a group, its halves first.
+    fn all(self, group: &mut Group, mut sums: AssemblySums<'_>) {
+        if let Some([left, right]) = group.halves.as_deref_mut() {
+            let (mut before, mut after) = sums.split_at(right.first);
+            self.executor
+                .join(&mut || self.all(left, before.reborrow()), &mut || {
+                    self.all(right, after.reborrow())
+                });
+        } else {
+            sums.clear();
         }
+        self.own(group, &mut sums);
     }
 
-    fn group(self, group: &mut Group, sums: &mut AssemblySums<'_>) {
+    fn own(self, group: &mut Group, sums: &mut AssemblySums<'_>) {
         let compute = |placed: &AssembledElement, room: &mut Workspace| {
             room.compute(placed, &self.moved, |past, u, force, tangent| {
+                if self.dofs.is_none() {
+                    return placed.element.resist(past, u, force, tangent);
+                }
                 tangent.fill(0.0);
                 let answers = placed.element.add(past, u, force, tangent);
                 if answers && (placed.held || !self.half) {
@@ -438,70 +370,112 @@ impl AssemblyWork<'_> {
                 return placed.give_up(sums);
             }
             let n = placed.dofs.len();
+            placed.add_forces(&room.force[..n], sums);
+            let Some(dofs) = self.dofs else { return };
             let tangent = &room.tangent[..n * n];
-            placed.scatter(&room.force[..n], tangent, sums);
+            placed.scatter(tangent, sums);
             if placed.held {
                 let (step, first) = (self.moved.step, sums.first.equation);
-                placed.couple(self.dofs, tangent, step, sums.out.coupling, first);
+                placed.couple(dofs, tangent, step, sums.out.coupling, first);
             }
         };
-        let elements = &self.elements[group.elements.clone()];
-        in_batches(
-            self.executor,
-            elements,
-            &mut group.rooms,
-            &compute,
-            &mut add,
+        self.in_batches(&group.elements, &mut group.rooms, &compute, &mut add);
+    }
+
+    /// Computes elements, as many at the same time as there are rooms, and adds each in order.
+    fn in_batches(
+        self,
+        numbers: &[u32],
+        rooms: &mut [Workspace],
+        compute: &(dyn Fn(&AssembledElement, &mut Workspace) + Sync),
+        add: &mut (dyn FnMut(&AssembledElement, &Workspace) + Send),
+    ) {
+        let mut all = || {
+            for batch in numbers.chunks(rooms.len()) {
+                let rooms = &mut rooms[..batch.len()];
+                self.side_by_side(batch, rooms, compute);
+                for (&k, room) in batch.iter().zip(&*rooms) {
+                    add(&self.elements[k as usize], room);
+                }
+            }
+        };
+        if numbers.len() >= MANY {
+            // The batches are short, so the executor's threads are entered only once.
+            self.executor.join(&mut all, &mut || {});
+        } else {
+            all();
+        }
+    }
+
+    /// Computes elements, some on each thread.
+    fn side_by_side(
+        self,
+        numbers: &[u32],
+        rooms: &mut [Workspace],
+        compute: &(dyn Fn(&AssembledElement, &mut Workspace) + Sync),
+    ) {
+        if numbers.len() <= TOGETHER {
+            let all = numbers.iter().zip(rooms);
+            return all.for_each(|(&k, room)| compute(&self.elements[k as usize], room));
+        }
+        let middle = numbers.len() / 2;
+        let (left, right) = numbers.split_at(middle);
+        let (before, after) = rooms.split_at_mut(middle);
+        self.executor.join(
+            &mut || self.side_by_side(left, before, compute),
+            &mut || self.side_by_side(right, after, compute),
         );
     }
 }
 
-/// Computes all elements, as many at the same time as there are rooms, and adds each in order.
-fn in_batches(
-    executor: &dyn Executor,
-    elements: &[AssembledElement],
-    rooms: &mut [Workspace],
-    compute: &(dyn Fn(&AssembledElement, &mut Workspace) + Sync),
-    add: &mut (dyn FnMut(&AssembledElement, &Workspace) + Send),
-) {
-    let mut all = || {
-        for batch in elements.chunks(rooms.len()) {
-            let rooms = &mut rooms[..batch.len()];
-            side_by_side(executor, batch, rooms, compute);
-            batch
-                .iter()
-                .zip(&*rooms)
-                .for_each(|(placed, room)| add(placed, room));
+impl Group {
+    /// The group of these elements, split where about half of them are before a degree of freedom; the elements' degrees of freedom
+    /// are in `spans`, and `start` is where those from one on start.
+    fn new(
+        elements: Vec<u32>,
+        first: ScatterMap,
+        spans: &[Range<usize>],
+        start: &dyn Fn(usize) -> ScatterMap,
+        room: &Workspace,
+    ) -> Self {
+        let many = elements.len() >= MANY;
+        let Some((dof, [before, after, across])) = divide(&elements, spans).filter(|_| many) else {
+            return Group {
+                halves: None,
+                rooms: vec![room.clone(); if many { BATCH } else { 1 }],
+                elements,
+                first,
+            };
+        };
+        let halves = [(before, first), (after, start(dof))]
+            .map(|(elements, first)| Group::new(elements, first, spans, start, room));
+        Group {
+            halves: Some(Box::new(halves)),
+            rooms: vec![room.clone()],
+            elements: across,
+            first,
         }
-    };
-    if elements.len() >= MANY {
-        // The batches are short, so the executor's threads are entered only once.
-        executor.join(&mut all, &mut || {});
-    } else {
-        all();
     }
 }
 
-/// Computes elements, some on each thread.
-fn side_by_side(
-    executor: &dyn Executor,
-    elements: &[AssembledElement],
-    rooms: &mut [Workspace],
-    compute: &(dyn Fn(&AssembledElement, &mut Workspace) + Sync),
-) {
-    if elements.len() <= TOGETHER {
-        return elements
-            .iter()
-            .zip(rooms)
-            .for_each(|(placed, room)| compute(placed, room));
+/// Elements before a degree of freedom, as many after it, and those across it; `None` if these are many.
+fn divide(elements: &[u32], spans: &[Range<usize>]) -> Option<(usize, [Vec<u32>; 3])> {
+    let mut starts: Vec<usize> = elements.iter().map(|&k| spans[k as usize].start).collect();
+    let middle = starts.len() / 2;
+    starts.get(middle)?;
+    let dof = *starts.select_nth_unstable(middle).1;
+    let mut parts = [Vec::new(), Vec::new(), Vec::new()];
+    for &k in elements {
+        let span = &spans[k as usize];
+        let which = match (span.end <= dof, span.start >= dof) {
+            (true, _) => 0,
+            (_, true) => 1,
+            _ => 2,
+        };
+        parts[which].push(k);
     }
-    let middle = elements.len() / 2;
-    let (left, right) = elements.split_at(middle);
-    let (before, after) = rooms.split_at_mut(middle);
-    executor.join(
-        &mut || side_by_side(executor, left, before, compute),
-        &mut || side_by_side(executor, right, after, compute),
-    );
+    let suits = !parts[0].is_empty() && parts[2].len() * ACROSS <= elements.len();
+    suits.then_some((dof, parts))
 }
 
 impl Workspace {

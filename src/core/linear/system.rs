@@ -399,10 +399,7 @@ impl System {
         self.layout = None;
         let pattern = match &self.bodies {
             Some(bodies) => bodies.pattern().clone(),
-            None => {
-                let entries = self.assembly.upper_entries(&model.dofs);
-                Arc::new(Pattern::new(model.dofs.equations, entries)?)
-            }
+            None => Arc::new(self.assembly.upper_pattern(&model.dofs)?),
         };
         let parts = uncoupled_parts(&pattern);
         let (executor, bodies) = (&self.executor, &mut self.bodies);
@@ -414,10 +411,10 @@ impl System {
                     done = new.map(|new| *bodies = Some(new));
                 }
             },
-            &mut || assembly.bind_parts(&model.dofs, &pattern, true, &parts),
+            &mut || assembly.bind(&model.dofs, &pattern, true),
         );
         done?;
-        self.stiffness.resize(pattern.entries(), 0.0);
+        self.stiffness = vec![0.0; pattern.entries()];
         for buffer in [&mut self.rhs, &mut self.x, &mut self.work] {
             buffer.resize(model.dofs.equations, 0.0);
         }

@@ -45,9 +45,7 @@ impl Tangent {
     /// [`SolveError::OutOfMemory`].
     pub fn new(model: &Model, system: &System) -> Result<Self, SolveError> {
         let mut assembly = Assembly::new(model);
-        let entries = assembly.upper_entries(&model.dofs);
-        let entries = entries.chain((0..model.dofs.equations).map(|e| (e, e)));
-        let pattern = Arc::new(Pattern::new(model.dofs.equations, entries)?);
+        let pattern = Arc::new(assembly.upper_pattern(&model.dofs)?);
         assembly.bind(&model.dofs, &pattern, true);
         let mut lengths = vec![false; model.dofs.equations];
         let mut levers = vec![1.0; model.dofs.equations];
