@@ -45,8 +45,8 @@ impl Pattern {
         })
     }
 
-    /// The upper half of the pattern of n unknowns that are coupled within lists of ascending ones, with the whole diagonal;
-    /// `starts` are those of the lists in `coupled`, and its length.
+    /// The upper half of the pattern in which the unknowns of each list are coupled, with the whole diagonal. The lists are
+    /// ascending and follow one another in `coupled`; `starts` are their first indices and, at the end, its length.
     ///
     /// # Errors
     /// [`SolveError::OutOfMemory`] if an index needs more than four bytes.

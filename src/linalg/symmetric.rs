@@ -13,8 +13,8 @@
 //! L_ii y_i = b_i,    r̃ = b_c − L_ci y_i;      L_iiᵀ u_i = D_i⁻¹ y_i − L_ciᵀ u_c.
 //! ```
 //!
-//! Only the upper half of the matrix is used. Its structure is found by groups of unknowns with the same rows, as those of a node
-//! have, so that it takes a quarter of the work. It is factored without pivoting. This is stable if no pivot is negative, because
+//! Only the upper half of the matrix is used. The symbolic factorization is done on groups of unknowns with the same rows, such as
+//! the two of a node, because this takes less time. The matrix is factored without pivoting. This is stable if no pivot is negative, because
 //! the terms of the factorization are then no larger than the matrix. With negative pivots the size of the terms is
 //! checked ([`SymmetricFactors::factor`]); if it is too large, the caller uses [`super::Factors`].
 
@@ -35,7 +35,8 @@ use std::sync::Arc;
 /// Backward error above which a solution is rejected. Without pivoting, growth must be detected here.
 const BACKWARD_LIMIT: f64 = 1e-12;
 
-/// Two supernodes are merged if they have at most this many columns together, and at most this fraction of their entries is zero.
+/// Two supernodes are merged if they have at most this many columns together, and at most this fraction of their entries is zero:
+/// faer's values.
 const RELAX: [(usize, f64); 4] = [(4, 1.0), (16, 0.8), (48, 0.1), (usize::MAX, 0.05)];
 
 /// A diagonal entry of S below this fraction of that of K is round-off.
@@ -70,7 +71,7 @@ impl SymmetricFactors {
     /// unknowns, from which large matrices get a better elimination order, or empty.
     ///
     /// # Errors
-    /// [`SolveError::OutOfMemory`], also if L has more than 2³¹ entries.
+    /// [`SolveError::OutOfMemory`], also if L of the groups of unknowns with the same rows has more than 2³¹ entries.
     pub fn new(
         pattern: Arc<Pattern>,
         last: &[usize],
@@ -80,7 +81,7 @@ impl SymmetricFactors {
         let order = order(&pattern, last, positions)?;
         let (lower, from) = pattern.in_order(&order);
         let groups = lower.groups(n - last.len());
-        let size = n.div_ceil(groups.len());
+        let size = (n as f64 / (groups.len() - 1) as f64).round().max(1.0) as usize;
         let relax = RELAX.map(|(columns, zeros)| (columns / size, zeros));
         let params = CholeskySymbolicParams {
             supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,

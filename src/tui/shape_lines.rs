@@ -39,7 +39,7 @@ pub(crate) struct Look<'a> {
     pub selected: usize,
 }
 
-/// The lines that were drawn last.
+/// The lines that were drawn last, and the places of marks over them.
 #[derive(Debug, Clone)]
 pub(crate) struct ShapeLines {
     source: LinesSource,
@@ -126,7 +126,7 @@ pub(crate) fn drawn(
             }
         }
     };
-    if lines.marks.load_factor != load_factor {
+    if lines.marks.load_factor.to_bits() != load_factor.to_bits() {
         let marks = Marks::new(&lines.canvas, &lines.window, view, load_factor);
         lines.marks = Rc::new(marks);
     }

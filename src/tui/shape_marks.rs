@@ -20,7 +20,7 @@ pub(crate) struct Marks {
     pub arrows: Vec<ConditionArrow>,
     /// Supports and turns with their cells.
     pub glyphs: Vec<((u16, u16), &'static str)>,
-    /// Where each body's name belongs.
+    /// Where each body's name belongs; empty for a single body, which is not named.
     pub bodies: Vec<Point>,
 }
 
@@ -28,6 +28,8 @@ impl Marks {
     pub fn new(canvas: &Canvas, window: &Window, view: &View, load_factor: f64) -> Self {
         let place = |node: usize| window.place(view, node);
         let Conditions { arrows, turns } = conditions(view.model, load_factor, &place);
+        let bodies = &view.model.bodies[..];
+        let named = if bodies.len() > 1 { bodies } else { &[] };
         let facts = view.facts();
         let supports = facts.supports.iter();
         let supports = supports.map(|&(node, held)| (node, support(held)));
@@ -42,12 +44,7 @@ impl Marks {
             slaves: view.model.contacts.iter().map(|c| place(c.node)).collect(),
             arrows,
             glyphs,
-            bodies: view
-                .model
-                .bodies
-                .iter()
-                .map(|b| middle(b, &place))
-                .collect(),
+            bodies: named.iter().map(|body| middle(body, &place)).collect(),
         }
     }
 }

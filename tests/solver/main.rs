@@ -14,6 +14,8 @@ mod program;
 
 // At the edges: singular systems, limits, held modes, new increments, settings.
 mod stepper;
+// Large meshes are assembled in parts that share no entries.
+mod assembly;
 // Each leg of the path may have increments of its own.
 mod legs;
 // A solver that goes over to another model of the same bodies has every bit of a new one.

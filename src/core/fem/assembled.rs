@@ -171,7 +171,7 @@ impl AssemblySums<'_> {
         }
     }
 
-    /// Splits the sums at given start indices; entries and coupling may be empty.
+    /// Splits the sums at given start indices. Without tangents, entries and coupling are empty.
     pub(super) fn split_at(&mut self, at: ScatterMap) -> (AssemblySums<'_>, AssemblySums<'_>) {
         let first = self.first;
         let out = &mut self.out;

@@ -20,10 +20,10 @@ use crate::{ElementOutput, Material, Model};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// A group of at least `MANY` elements is split if at most the fraction 1 / `ACROSS` of them follows both halves. Otherwise it is
-/// computed in batches of `BATCH` elements, of which `TOGETHER` are computed by one thread.
+/// A group of at least `MANY` elements is split if this saves at least the fraction `SAVED` of the time on two threads. Many that
+/// are not split are computed in batches of `BATCH` elements, of which `TOGETHER` are computed by one thread.
 const MANY: usize = 1000;
-const ACROSS: usize = 4;
+const SAVED: f64 = 0.25;
 const BATCH: usize = 128;
 const TOGETHER: usize = 16;
 
@@ -201,7 +201,9 @@ impl Assembly {
             list(&mut placed.dofs.iter().filter_map(|&d| dofs.equation[d]));
         }
         for (row, column) in self.matrices.iter().flat_map(|m| m.entries(dofs)) {
-            list(&mut [row, column].into_iter());
+            if row <= column {
+                list(&mut [row, column].into_iter());
+            }
         }
         Pattern::upper_from_lists(dofs.equations, (&starts, &coupled), &*self.executor)
     }
@@ -211,14 +213,15 @@ impl Assembly {
         self.half = half;
         let spans: Vec<Range<usize>> = self.elements.iter().map(AssembledElement::span).collect();
         let all = (0..self.elements.len() as u32).collect();
-        let start = |dof: usize| {
-            let equation = dofs.equation[dof..].iter().flatten().next();
-            let equation = equation.map_or(dofs.equations, |e| *e);
-            ScatterMap {
-                dof,
-                slot: pattern.start(equation),
-                equation,
-            }
+        // The next equation from each degree of freedom on.
+        let mut next = vec![dofs.equations; dofs.len() + 1];
+        for (dof, equation) in dofs.equation.iter().enumerate().rev() {
+            next[dof] = equation.unwrap_or(next[dof + 1]);
+        }
+        let start = |dof: usize| ScatterMap {
+            dof,
+            slot: pattern.start(next[dof]),
+            equation: next[dof],
         };
         self.group = Group::new(all, ScatterMap::default(), &spans, &start, &self.room);
         let mut batches: Vec<_> = self.elements.chunks_mut(MANY).collect();
@@ -391,7 +394,7 @@ impl AssemblyWork<'_> {
         add: &mut (dyn FnMut(&AssembledElement, &Workspace) + Send),
     ) {
         let mut all = || {
-            for batch in numbers.chunks(rooms.len()) {
+            for batch in numbers.chunks(rooms.len().max(1)) {
                 let rooms = &mut rooms[..batch.len()];
                 self.side_by_side(batch, rooms, compute);
                 for (&k, room) in batch.iter().zip(&*rooms) {
@@ -429,8 +432,8 @@ impl AssemblyWork<'_> {
 }
 
 impl Group {
-    /// The group of these elements, split where about half of them are before a degree of freedom; the elements' degrees of freedom
-    /// are in `spans`, and `start` is where those from one on start.
+    /// The group of these elements, whose degrees of freedom are in `spans`. `start` gives the start indices from a degree of
+    /// freedom on.
     fn new(
         elements: Vec<u32>,
         first: ScatterMap,
@@ -438,44 +441,68 @@ impl Group {
         start: &dyn Fn(usize) -> ScatterMap,
         room: &Workspace,
     ) -> Self {
-        let many = elements.len() >= MANY;
-        let Some((dof, [before, after, across])) = divide(&elements, spans).filter(|_| many) else {
+        let rooms = |elements: &[u32]| {
+            let many = elements.len() >= MANY;
+            vec![room.clone(); if many { BATCH } else { 1 }]
+        };
+        let Some(dof) = best_cut(&elements, spans) else {
             return Group {
                 halves: None,
-                rooms: vec![room.clone(); if many { BATCH } else { 1 }],
+                rooms: rooms(&elements),
                 elements,
                 first,
             };
         };
+        let mut parts = [Vec::new(), Vec::new(), Vec::new()];
+        for k in elements {
+            let span = &spans[k as usize];
+            let which = match (span.end <= dof, span.start >= dof) {
+                (true, _) => 0,
+                (_, true) => 1,
+                _ => 2,
+            };
+            parts[which].push(k);
+        }
+        let [before, after, across] = parts;
         let halves = [(before, first), (after, start(dof))]
             .map(|(elements, first)| Group::new(elements, first, spans, start, room));
         Group {
             halves: Some(Box::new(halves)),
-            rooms: vec![room.clone()],
+            rooms: rooms(&across),
             elements: across,
             first,
         }
     }
 }
 
-/// Elements before a degree of freedom, as many after it, and those across it; `None` if these are many.
-fn divide(elements: &[u32], spans: &[Range<usize>]) -> Option<(usize, [Vec<u32>; 3])> {
-    let mut starts: Vec<usize> = elements.iter().map(|&k| spans[k as usize].start).collect();
-    let middle = starts.len() / 2;
-    starts.get(middle)?;
-    let dof = *starts.select_nth_unstable(middle).1;
-    let mut parts = [Vec::new(), Vec::new(), Vec::new()];
-    for &k in elements {
-        let span = &spans[k as usize];
-        let which = match (span.end <= dof, span.start >= dof) {
-            (true, _) => 0,
-            (_, true) => 1,
-            _ => 2,
-        };
-        parts[which].push(k);
+/// The degree of freedom at which many elements are split: the longer half and the elements across the cut, which follow, are as
+/// few as possible. `None` if little is saved.
+fn best_cut(elements: &[u32], spans: &[Range<usize>]) -> Option<usize> {
+    if elements.len() < MANY {
+        return None;
     }
-    let suits = !parts[0].is_empty() && parts[2].len() * ACROSS <= elements.len();
-    suits.then_some((dof, parts))
+    let sorted = |of: fn(&Range<usize>) -> usize| {
+        let mut ends: Vec<usize> = elements.iter().map(|&k| of(&spans[k as usize])).collect();
+        ends.sort_unstable();
+        ends
+    };
+    let (starts, ends) = (sorted(|span| span.start), sorted(|span| span.end));
+    let (mut best, mut before) = ((elements.len(), None), 0);
+    for (k, &dof) in starts.iter().enumerate() {
+        if k > 0 && starts[k - 1] == dof {
+            continue;
+        }
+        while before < ends.len() && ends[before] <= dof {
+            before += 1;
+        }
+        let (across, after) = (k - before, elements.len() - k);
+        let time = before.max(after) + across;
+        if time < best.0 {
+            best = (time, Some(dof));
+        }
+    }
+    let saves = best.0 as f64 <= (1.0 - SAVED) * elements.len() as f64;
+    best.1.filter(|_| saves)
 }
 
 impl Workspace {
@@ -523,4 +550,33 @@ pub fn history_len(model: &Model) -> usize {
 fn dofs_of(model: &Model, nodes: &[usize], count: usize) -> Vec<usize> {
     let of_node = |&n: &usize| (0..count).map(move |k| model.dofs.first[n] + k);
     nodes.iter().flat_map(of_node).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The elements of chains of bars between consecutive degrees of freedom, numbered from `first` on in steps.
+    fn chain(first: usize, count: usize, step: usize) -> impl Iterator<Item = Range<usize>> {
+        let place = move |k: usize| first + (k * step) % count;
+        (0..count - 1).map(move |k| {
+            let ends = [place(k), place(k + 1)];
+            ends[0].min(ends[1])..ends[0].max(ends[1]) + 1
+        })
+    }
+
+    #[test]
+    fn elements_are_cut_where_few_or_none_are_across() {
+        let numbers: Vec<u32> = (0..3000).collect();
+        let in_order: Vec<_> = chain(0, 3001, 1).collect();
+        let cut = best_cut(&numbers, &in_order).unwrap();
+        assert!((1490..1510).contains(&cut), "{cut}");
+        // Neighbours are far apart in number.
+        let scattered: Vec<_> = chain(0, 3001, 1234).collect();
+        assert_eq!(best_cut(&numbers, &scattered), None);
+        // Between two bodies, although neither can be cut.
+        let two: Vec<_> = chain(0, 2000, 739).chain(chain(2000, 1002, 379)).collect();
+        assert_eq!(best_cut(&numbers, &two), Some(2000));
+        assert_eq!(best_cut(&numbers[..MANY - 1], &in_order), None);
+    }
 }

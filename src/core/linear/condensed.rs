@@ -65,6 +65,7 @@ impl CondensedSystem {
         self.rows.reserve(count);
         self.unknown.reserve(count);
         for matrix in [&mut self.relation.response, &mut self.matrix] {
+            // Memory that is not written yet costs nothing.
             *matrix = vec![0.0; count * count];
         }
         self.dense = Some(DenseFactors::new(count, 1)?);

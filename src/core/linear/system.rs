@@ -414,6 +414,7 @@ impl System {
             &mut || assembly.bind(&model.dofs, &pattern, true),
         );
         done?;
+        // Several threads write to this memory first.
         self.stiffness = vec![0.0; pattern.entries()];
         for buffer in [&mut self.rhs, &mut self.x, &mut self.work] {
             buffer.resize(model.dofs.equations, 0.0);

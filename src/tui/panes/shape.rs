@@ -27,7 +27,7 @@ use stickslip_debugger::Examination;
 use stickslip_debugger::action;
 use stickslip_debugger::explain::conditions::{ConditionArrow, Given};
 use stickslip_debugger::explain::names;
-use stickslip_debugger::explain::outline::{self};
+use stickslip_debugger::explain::outline;
 use stickslip_debugger::explain::strain;
 use stickslip_scene::number;
 use unicode_width::UnicodeWidthStr;
@@ -175,9 +175,6 @@ fn body_names(
     app: &App,
     view: &View,
 ) {
-    if view.model.bodies.len() < 2 {
-        return;
-    }
     let area = canvas.area();
     for (body, &at) in view.model.bodies.iter().zip(&marks.bodies) {
         let name = paint::cut(&body.name, 12);
@@ -340,6 +337,12 @@ fn slaves(
         let Some(&Some((x, y))) = cells.get(slave) else {
             continue;
         };
+        let is_marked = found(view).is_some_and(|found| found.nodes.contains(&slave));
+        // Of a fine mesh many nodes are in one cell; the last letter stays.
+        let is_covered = cells.get(slave + 1) == Some(&Some((x, y)));
+        if is_covered && !is_marked && ![slave, slave + 1].contains(&selected) {
+            continue;
+        }
         // The mode in which the drawn forces were found.
         let mode = view.mode_before(slave);
         let style = theme.mode(mode).add_modifier(Modifier::BOLD);
@@ -358,9 +361,7 @@ fn slaves(
         {
             name(buffer, canvas, (x, y), view.slave(slave), theme);
         }
-        if found(view).is_some_and(|found| found.nodes.contains(&slave))
-            && canvas.area().contains(right.into())
-        {
+        if is_marked && canvas.area().contains(right.into()) {
             paint::label(buffer, right, MARK, theme.strong, theme);
         }
     }
