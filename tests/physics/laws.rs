@@ -429,9 +429,10 @@ fn laws_that_make_no_sense_are_refused_with_what_would() {
         block.scene().map(|_| ()).unwrap_err()
     };
     let cases = "\
-        , law: Penalty(stiffness: 0.0) | () | it must be positive
-        , law: Penalty(stiffness: -1.0) | () | it must be positive
-        , stick: 0.0 | () | it must be positive
+        , law: Penalty(stiffness: 0.0) | () | a stiffness must be positive
+        , law: Penalty(stiffness: -1.0) | () | a stiffness must be positive
+        , law: Penalty(stiffness: 1e31) | () | a stiffness must be positive and finite
+        , stick: 0.0 | () | a stiffness must be positive
         , area: -2.0 | () | it must be positive
         , law: Tied, stick: 3.0 | () | leave stick out
         , law: Tied, friction: Some((angle: 2.0)) | () | leave friction out
@@ -445,6 +446,36 @@ fn laws_that_make_no_sense_are_refused_with_what_would() {
         let message = refused(pair, friction);
         assert!(message.contains(wanted), "{pair} {friction}: {message}");
     }
+}
+
+/// In N and m, the contact stiffness of steel is beyond 1e12.
+#[test]
+fn a_law_in_newtons_and_metres_gives_the_same_state() {
+    let pressed = Block {
+        pair: ", law: Penalty(stiffness: 5e5), stick: 5e4",
+        friction: "(angle: 20.0)",
+        moved: (1e-4, -1e-4),
+        supports: "",
+        ..Block::default()
+    };
+    let soft = pressed.scene().unwrap();
+    let mut text = soft.text.clone();
+    for (soft, stiff) in [("E: 1000.0", "E: 2e11"), ("5e5", "1e14"), ("5e4", "1e13")] {
+        assert!(text.contains(soft));
+        text = text.replace(soft, stiff);
+    }
+    let stiff = Scene::from_text("block.ron", &text, &[]).unwrap();
+    let [x, y, pressure, shear, bottom] = last(&stiff);
+    let [soft_x, soft_y, soft_pressure, soft_shear, soft_bottom] = last(&soft);
+    for (stiff, soft) in [
+        (x, soft_x),
+        (y, soft_y),
+        (pressure, soft_pressure),
+        (shear, soft_shear),
+    ] {
+        close(stiff / 2e8, soft, 1e-9);
+    }
+    close(bottom, soft_bottom, 1e-9);
 }
 
 /// A node on two springs over a floor.
