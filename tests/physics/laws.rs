@@ -478,6 +478,45 @@ fn a_law_in_newtons_and_metres_gives_the_same_state() {
     close(bottom, soft_bottom, 1e-9);
 }
 
+/// A pad is drawn along an arm that it bends: the side stretches more at the clamp than at the pad, and with it the elastic slip.
+#[test]
+fn elastic_slip_on_a_side_that_stretches_unevenly_is_no_slip() {
+    let text = r#"(
+    title: "A pad on an arm",
+    nodes: [
+        Block(id: "arm", corners: [(0.0, 0.0), (2.0, 0.5)], elements: (1, 1)),
+        Node(id: "pad", at: (1.2, 0.5)),
+        Node(id: "end", at: (1.2, 2.5)),
+    ],
+    materials: [Elastic(id: "soft", E: 100.0, nu: 0.0)],
+    bodies: [
+        Solid(id: "arm", mesh: "arm", material: "soft"),
+        Springs(id: "hold", bars: [
+            (nodes: ["pad", "end"], angle: 90.0, stiffness: 10.0),
+            (nodes: ["pad", "end"], angle: 0.0, stiffness: 10.0),
+        ]),
+    ],
+    surfaces: [(id: "top", along: "arm.top")],
+    slaves: [(nodes: ["pad"], on: ["top"], stick: 2.0, area: 1.0)],
+    friction: (angle: 70.0),
+    supports: [(node: "arm.left", fix: [x, y])],
+    loads: [
+        Displacement(node: "end", component: y, value: -0.4, scale: [(0.0, 0.0), (1.0, 1.0)]),
+        Displacement(node: "end", component: x, value: -0.3, scale: [(1.0, 0.0), (2.0, 1.0)]),
+    ],
+    history: (path: [0.0, 1.0, 2.0], increment: 0.25),
+    monitors: [(name: "stuck", of: Modes(mode: fixed))],
+)"#;
+    let scene = Scene::from_text("pad.ron", text, &[]).unwrap();
+    let run = finished(&scene);
+    assert_eq!(run.accepted.len(), 8);
+    assert!(
+        run.accepted
+            .iter()
+            .all(|state| state.monitors["stuck"] == 1.0)
+    );
+}
+
 /// A node on two springs over a floor.
 fn node(pair: &str) -> Result<Scene, String> {
     let text = format!(
