@@ -161,6 +161,22 @@ fn an_increment_that_is_accepted_unsettled_is_not_accepted_in_silence() {
 }
 
 #[test]
+fn a_body_that_moves_without_a_force_is_warned_of() {
+    let wedge = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/tests/findings/wedge-let-go.ron"
+    );
+    let warned = |arguments: &[&str]| {
+        let output = ran(&[&["run", wedge, "--quiet"], arguments].concat());
+        assert_eq!(code(&output), 0, "{}", err(&output));
+        err(&output).contains("body wedge moved by up to")
+    };
+    assert!(warned(&[]));
+    // While the ram presses, there is nothing to warn of.
+    assert!(!warned(&["--set", "loads[1].value=0.005"]));
+}
+
+#[test]
 fn bad_input_ends_with_2_and_one_line() {
     let directory = tempfile::tempdir().unwrap();
     std::fs::write(
