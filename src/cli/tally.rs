@@ -238,7 +238,9 @@ impl<'a> Tally<'a> {
         let u = &solver.state().start.u;
         if let Some(unforced) = &mut self.unforced {
             let at = (event.position.increment, event.load_factor);
-            unforced.see(model, at, &event.nodes, u);
+            if let Outcome::Increment { after, .. } = &event.outcome {
+                unforced.see(model, at, &event.nodes, after, u);
+            }
         }
         let row = || table::csv_row(model, event, minors, monitors, stability, u);
         let sent = send(&mut outputs.csv, row)?;

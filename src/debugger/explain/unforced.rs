@@ -7,10 +7,10 @@ use std::collections::HashSet;
 use std::ops::RangeInclusive;
 use stickslip_core::contact::record::ContactRecord;
 use stickslip_core::model::{BodyKind, diagonal};
-use stickslip_core::{Body, Model};
+use stickslip_core::{Body, Model, Norms};
 use stickslip_scene::{shortest, sig4};
 
-/// Contact forces below this part of the largest one of the run are round-off.
+/// Contact forces below this part of the force scale are round-off.
 const NO_FORCE: f64 = 1e-9;
 /// Motions below this part of the scene's length are not reported: a body that is let go moves as its strains recover.
 const NO_MOTION: f64 = 1e-3;
@@ -31,8 +31,6 @@ pub struct UnforcedWatch {
     /// Positions after the last accepted increment.
     places: Vec<[f64; 2]>,
     length: f64,
-    /// Largest contact force so far.
-    largest: f64,
 }
 
 impl UnforcedWatch {
@@ -43,27 +41,26 @@ impl UnforcedWatch {
             bodies: free.collect(),
             places: model.places(u),
             length: diagonal(model.nodes.iter()),
-            largest: 0.0,
         }
     }
 
-    /// Records an accepted increment: its number and load, its contacts, and the displacements at its end.
+    /// Records an accepted increment: its number and load, and its contacts, norms and displacements at its end.
     pub fn see(
         &mut self,
         model: &Model,
         (increment, load): (u32, f64),
         contacts: &[ContactRecord],
+        norms: &Norms,
         u: &[f64],
     ) {
         if self.bodies.is_empty() {
             return;
         }
         let size = |contact: &ContactRecord| contact.f_n.hypot(contact.f_t);
-        self.largest = contacts.iter().map(size).fold(self.largest, f64::max);
         let places = model.places(u);
         for free in &mut self.bodies {
             let force = free.contacts.iter().map(|&c| size(&contacts[c]));
-            if force.fold(0.0, f64::max) > NO_FORCE * self.largest {
+            if force.fold(0.0, f64::max) > NO_FORCE * norms.scale {
                 continue;
             }
             let nodes = model.bodies[free.body].nodes.iter();
