@@ -20,6 +20,7 @@ use stickslip_debugger::explain::unforced::UnforcedWatch;
 use stickslip_debugger::history::rounds::{self, CycleWatch};
 use stickslip_debugger::record::table;
 use stickslip_scene::number::UNREPORTED;
+use stickslip_scene::overlaps;
 use stickslip_scene::{Scene, aligned, joined, shortest, sig6};
 
 /// Warnings that are printed individually; others are only counted.
@@ -389,7 +390,15 @@ impl<'a> Tally<'a> {
             self.messages.warn(left);
         }
         if let Some(unforced) = &self.unforced {
-            for found in unforced.found(&self.scene.model) {
+            let model = &self.scene.model;
+            let soft = model.contacts.iter().zip(&self.slaves);
+            let soft = soft
+                .filter(|(contact, _)| !contact.bond.is_hard())
+                .map(|(_, found)| -found.gap)
+                .fold(0.0, f64::max);
+            let mut all = unforced.found(model);
+            all.extend(overlaps::at_end(model, unforced.places(), soft));
+            for found in all {
                 self.messages.warn(found);
             }
         }

@@ -53,9 +53,6 @@ impl UnforcedWatch {
         norms: &Norms,
         u: &[f64],
     ) {
-        if self.bodies.is_empty() {
-            return;
-        }
         let size = |contact: &ContactRecord| contact.f_n.hypot(contact.f_t);
         let places = model.places(u);
         for free in &mut self.bodies {
@@ -82,6 +79,11 @@ impl UnforcedWatch {
             free.moved = Some((start..=increment, [from, load]));
         }
         self.places = places;
+    }
+
+    /// Positions of all nodes after the last accepted increment.
+    pub fn places(&self) -> &[[f64; 2]] {
+        &self.places
     }
 
     /// One sentence per body that moved without a force.
