@@ -16,9 +16,11 @@ use stickslip_debugger::explain::limit_load::body_without_friction;
 use stickslip_debugger::explain::names;
 use stickslip_debugger::explain::report;
 use stickslip_debugger::explain::touch::TouchWatch;
+use stickslip_debugger::explain::unforced::UnforcedWatch;
 use stickslip_debugger::history::rounds::{self, CycleWatch};
 use stickslip_debugger::record::table;
 use stickslip_scene::number::UNREPORTED;
+use stickslip_scene::overlaps;
 use stickslip_scene::{Scene, aligned, joined, shortest, sig6};
 
 /// Warnings that are printed individually; others are only counted.
@@ -113,6 +115,8 @@ pub struct Tally<'a> {
     slaves: Vec<ContactRecord>,
     /// Present if `touch: auto` has a choice.
     pub touch: Option<TouchWatch>,
+    /// Present if this program solves the scene.
+    pub unforced: Option<UnforcedWatch>,
 }
 
 impl<'a> Tally<'a> {
@@ -143,6 +147,7 @@ impl<'a> Tally<'a> {
             monitors: Vec::new(),
             slaves: Vec::new(),
             touch: None,
+            unforced: None,
         }
     }
 
@@ -232,6 +237,12 @@ impl<'a> Tally<'a> {
         }
         let model = &self.scene.model;
         let u = &solver.state().start.u;
+        if let Some(unforced) = &mut self.unforced {
+            let at = (event.position.increment, event.load_factor);
+            if let Outcome::Increment { after, .. } = &event.outcome {
+                unforced.see(model, at, &event.nodes, after, u);
+            }
+        }
         let row = || table::csv_row(model, event, minors, monitors, stability, u);
         let sent = send(&mut outputs.csv, row)?;
         self.accepted += 1;
@@ -377,6 +388,19 @@ impl<'a> Tally<'a> {
         }
         if let Some(left) = accuracy::left(&self.noisiest) {
             self.messages.warn(left);
+        }
+        if let Some(unforced) = &self.unforced {
+            let model = &self.scene.model;
+            let soft = model.contacts.iter().zip(&self.slaves);
+            let soft = soft
+                .filter(|(contact, _)| !contact.bond.is_hard())
+                .map(|(_, found)| -found.gap)
+                .fold(0.0, f64::max);
+            let mut all = unforced.found(model);
+            all.extend(overlaps::at_end(model, unforced.places(), soft));
+            for found in all {
+                self.messages.warn(found);
+            }
         }
         let tolerance = self.scene.model.settings.tolerance;
         if let Some(raised) = accuracy::raised(tolerance, self.reached) {

@@ -4,13 +4,12 @@
 use crate::few;
 use crate::groups::marked;
 use crate::number::sig4;
+use crate::overlaps;
 use crate::pressed;
-use std::cell::LazyCell;
-use std::collections::HashSet;
 use stickslip_core::contact::facing::{MOST as MOST_SURFACES, faced};
 use stickslip_core::contact::projection::{project, projection_at};
 use stickslip_core::fem::lagrange;
-use stickslip_core::plane::{depth_inside, dot, range};
+use stickslip_core::plane::{dot, range};
 use stickslip_core::{
     Body, BodyKind, Contact, InitialGaps, Model, Node, Surface, SurfaceElement, SurfacePoint,
 };
@@ -142,7 +141,7 @@ pub fn warnings(model: &Model) -> Vec<String> {
         ));
     }
     all.extend(unheld(model));
-    all.extend(overlapping(model));
+    all.extend(overlaps::at_start(model));
     all.extend(pressed::warnings(model));
     all
 }
@@ -268,75 +267,6 @@ fn unheld(model: &Model) -> Vec<String> {
             )
         })
         .collect()
-}
-
-/// Pairs of solids where a node of one lies inside the outline of the other.
-fn overlapping(model: &Model) -> Vec<String> {
-    let solids: Vec<(&Body, Outline)> = model
-        .bodies
-        .iter()
-        .filter_map(|body| Some((body, Outline::new(model, &body.solid()?.edges))))
-        .collect();
-    let near = NONE.sqrt() * model.length;
-    let mut all = Vec::new();
-    for (a, (body, outline)) in solids.iter().enumerate() {
-        let others = solids
-            .iter()
-            .enumerate()
-            .filter(|(b, (_, other))| *b != a && outline.meets(other));
-        let own = LazyCell::new(|| body.nodes.iter().copied().collect::<HashSet<usize>>());
-        for (_, (other, _)) in others {
-            if let Some(&node) =
-                other.kind.lines().iter().flatten().find(|node| {
-                    outline.contains(model.nodes[**node].at, near) && !own.contains(node)
-                })
-            {
-                all.push(format!(
-                    "bodies {} and {} overlap: {} of the second lies inside the first",
-                    body.name, other.name, model.nodes[node].name
-                ));
-            }
-        }
-    }
-    all
-}
-
-/// A closed outline, straight between nodes.
-struct Outline {
-    sides: Vec<[[f64; 2]; 2]>,
-    /// Smallest and largest coordinates.
-    low: [f64; 2],
-    high: [f64; 2],
-}
-
-impl Outline {
-    fn new(model: &Model, edges: &[Vec<usize>]) -> Self {
-        let sides = edges
-            .iter()
-            .flat_map(|edge| edge.windows(2))
-            .map(|pair| [model.nodes[pair[0]].at, model.nodes[pair[1]].at]);
-        let sides: Vec<[[f64; 2]; 2]> = sides.collect();
-        let over = |from: f64, choose: fn(f64, f64) -> f64| {
-            let ends = || sides.iter().flatten();
-            [0, 1].map(|axis| ends().fold(from, |most, end| choose(most, end[axis])))
-        };
-        Outline {
-            low: over(f64::INFINITY, f64::min),
-            high: over(f64::NEG_INFINITY, f64::max),
-            sides,
-        }
-    }
-
-    /// Whether the bounding boxes have a point in common.
-    fn meets(&self, other: &Outline) -> bool {
-        (0..2).all(|k| self.low[k] <= other.high[k] && other.low[k] <= self.high[k])
-    }
-
-    /// Whether a point lies inside by more than `near` from each side.
-    fn contains(&self, at: [f64; 2], near: f64) -> bool {
-        let inside_box = (0..2).all(|k| at[k] - self.low[k] > near && self.high[k] - at[k] > near);
-        inside_box && depth_inside(&self.sides, at) > near
-    }
 }
 
 fn some(model: &Model, slaves: &[usize]) -> String {

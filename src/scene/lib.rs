@@ -31,6 +31,7 @@ pub mod memory;
 pub mod mesh_file;
 pub mod nodes;
 pub mod number;
+pub mod overlaps;
 pub mod precision;
 pub mod problems;
 pub mod readers;

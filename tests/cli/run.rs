@@ -161,6 +161,57 @@ fn an_increment_that_is_accepted_unsettled_is_not_accepted_in_silence() {
 }
 
 #[test]
+fn a_body_that_moves_without_a_force_is_warned_of() {
+    let wedge = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/tests/findings/wedge-let-go.ron"
+    );
+    let warned = |arguments: &[&str]| {
+        let output = ran(&[&["run", wedge, "--quiet"], arguments].concat());
+        assert_eq!(code(&output), 0, "{}", err(&output));
+        err(&output).contains("body wedge moved by up to")
+    };
+    assert!(warned(&[]));
+    // While the ram presses, there is nothing to warn of.
+    assert!(!warned(&["--set", "loads[1].value=0.005"]));
+}
+
+/// Both nodes of the base's top lie beyond the ends of the pad's bottom; the other way round, the pad's nodes lie over the base.
+#[test]
+fn bodies_that_overlap_after_a_run_are_warned_of() {
+    let directory = tempfile::tempdir().unwrap();
+    let warned = |slaves: &str, surface: &str| {
+        let text = format!(
+            r#"(
+    title: "A pad on a wider base",
+    nodes: [
+        Block(id: "base", corners: [(-1.0, 0.0), (2.0, 1.0)], elements: (1, 1), element: quad4),
+        Block(id: "pad", corners: [(0.0, 1.0), (1.0, 2.0)], elements: (1, 1), element: quad4),
+    ],
+    materials: [Elastic(id: "soft", E: 100.0, nu: 0.2)],
+    bodies: [
+        Solid(id: "base", mesh: "base", material: "soft"),
+        Solid(id: "pad", mesh: "pad", material: "soft"),
+    ],
+    surfaces: [(id: "face", along: "{surface}")],
+    slaves: [(nodes: ["{slaves}"], on: ["face"])],
+    supports: [(node: "base.bottom", fix: [x, y]), (node: "pad.top", fix: [x])],
+    loads: [Displacement(node: "pad.top", component: y, value: -0.1)],
+    history: (path: [0.0, 1.0], increment: 0.5),
+)"#
+        );
+        std::fs::write(directory.path().join("pad.ron"), text).unwrap();
+        let output = crate::program::ran(directory.path(), &["run", "pad.ron", "--quiet"]);
+        assert_eq!(code(&output), 0, "{}", err(&output));
+        let lies_inside = "bodies base and pad overlap in the last accepted state: pad.1 of the \
+                           second lies inside the first by 0.1.";
+        err(&output).contains(lies_inside)
+    };
+    assert!(warned("base.top", "pad.bottom"));
+    assert!(!warned("pad.bottom", "base.top"));
+}
+
+#[test]
 fn bad_input_ends_with_2_and_one_line() {
     let directory = tempfile::tempdir().unwrap();
     std::fs::write(

@@ -429,9 +429,10 @@ fn laws_that_make_no_sense_are_refused_with_what_would() {
         block.scene().map(|_| ()).unwrap_err()
     };
     let cases = "\
-        , law: Penalty(stiffness: 0.0) | () | it must be positive
-        , law: Penalty(stiffness: -1.0) | () | it must be positive
-        , stick: 0.0 | () | it must be positive
+        , law: Penalty(stiffness: 0.0) | () | a stiffness must be positive
+        , law: Penalty(stiffness: -1.0) | () | a stiffness must be positive
+        , law: Penalty(stiffness: 1e31) | () | a stiffness must be positive and finite
+        , stick: 0.0 | () | a stiffness must be positive
         , area: -2.0 | () | it must be positive
         , law: Tied, stick: 3.0 | () | leave stick out
         , law: Tied, friction: Some((angle: 2.0)) | () | leave friction out
@@ -445,6 +446,75 @@ fn laws_that_make_no_sense_are_refused_with_what_would() {
         let message = refused(pair, friction);
         assert!(message.contains(wanted), "{pair} {friction}: {message}");
     }
+}
+
+/// In N and m, the contact stiffness of steel is beyond 1e12.
+#[test]
+fn a_law_in_newtons_and_metres_gives_the_same_state() {
+    let pressed = Block {
+        pair: ", law: Penalty(stiffness: 5e5), stick: 5e4",
+        friction: "(angle: 20.0)",
+        moved: (1e-4, -1e-4),
+        supports: "",
+        ..Block::default()
+    };
+    let soft = pressed.scene().unwrap();
+    let mut text = soft.text.clone();
+    for (soft, stiff) in [("E: 1000.0", "E: 2e11"), ("5e5", "1e14"), ("5e4", "1e13")] {
+        assert!(text.contains(soft));
+        text = text.replace(soft, stiff);
+    }
+    let stiff = Scene::from_text("block.ron", &text, &[]).unwrap();
+    let [x, y, pressure, shear, bottom] = last(&stiff);
+    let [soft_x, soft_y, soft_pressure, soft_shear, soft_bottom] = last(&soft);
+    for (stiff, soft) in [
+        (x, soft_x),
+        (y, soft_y),
+        (pressure, soft_pressure),
+        (shear, soft_shear),
+    ] {
+        close(stiff / 2e8, soft, 1e-9);
+    }
+    close(bottom, soft_bottom, 1e-9);
+}
+
+/// A pad is drawn along an arm that it bends: the side stretches more at the clamp than at the pad, and with it the elastic slip.
+#[test]
+fn elastic_slip_on_a_side_that_stretches_unevenly_is_no_slip() {
+    let text = r#"(
+    title: "A pad on an arm",
+    nodes: [
+        Block(id: "arm", corners: [(0.0, 0.0), (2.0, 0.5)], elements: (1, 1)),
+        Node(id: "pad", at: (1.2, 0.5)),
+        Node(id: "end", at: (1.2, 2.5)),
+    ],
+    materials: [Elastic(id: "soft", E: 100.0, nu: 0.0)],
+    bodies: [
+        Solid(id: "arm", mesh: "arm", material: "soft"),
+        Springs(id: "hold", bars: [
+            (nodes: ["pad", "end"], angle: 90.0, stiffness: 10.0),
+            (nodes: ["pad", "end"], angle: 0.0, stiffness: 10.0),
+        ]),
+    ],
+    surfaces: [(id: "top", along: "arm.top")],
+    slaves: [(nodes: ["pad"], on: ["top"], stick: 2.0, area: 1.0)],
+    friction: (angle: 70.0),
+    supports: [(node: "arm.left", fix: [x, y])],
+    loads: [
+        Displacement(node: "end", component: y, value: -0.4, scale: [(0.0, 0.0), (1.0, 1.0)]),
+        Displacement(node: "end", component: x, value: -0.3, scale: [(1.0, 0.0), (2.0, 1.0)]),
+    ],
+    history: (path: [0.0, 1.0, 2.0], increment: 0.25),
+    monitors: [(name: "stuck", of: Modes(mode: fixed))],
+)"#;
+    let scene = Scene::from_text("pad.ron", text, &[]).unwrap();
+    let run = finished(&scene);
+    assert_eq!(run.accepted.len(), 8);
+    assert!(
+        run.accepted
+            .iter()
+            .all(|state| state.monitors["stuck"] == 1.0)
+    );
 }
 
 /// A node on two springs over a floor.

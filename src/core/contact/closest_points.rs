@@ -197,11 +197,6 @@ pub fn place(element: SurfaceElement<'_>, positions: &[[f64; 2]], xi: f64) -> [f
     blend(element.nodes, positions, &element.shape(xi).n)
 }
 
-/// |dx/dξ| at a point of an element (length).
-pub fn speed(element: SurfaceElement<'_>, positions: &[[f64; 2]], xi: f64) -> f64 {
-    length(blend(element.nodes, positions, &element.slopes(xi)))
-}
-
 /// Unit tangent along the walk at a point of an element. `None` where dx/dξ = 0.
 pub fn direction(element: SurfaceElement<'_>, positions: &[[f64; 2]], xi: f64) -> Option<[f64; 2]> {
     unit(blend(element.nodes, positions, &element.slopes(xi)))

@@ -22,7 +22,7 @@
 //! bodies reduce the accuracy of forces but not of positions.
 
 use crate::contact::closest_history::{ClosestPoints, FEW};
-use crate::contact::closest_points::{self, ClosestPoint, direction, place, speed};
+use crate::contact::closest_points::{self, ClosestPoint, direction, place};
 use crate::contact::corner::Side;
 use crate::contact::element::closed;
 use crate::contact::facing::{MOST, faced};
@@ -30,7 +30,7 @@ use crate::contact::point_force::judged::{JudgedGives, LoadedInterface, hand_on}
 use crate::contact::projection::{projection_at, tangent};
 use crate::contact::side_laws::{Amounts, SideHistory, TouchedSide};
 use crate::contact::side_laws::{beyond_border, in_corner, on_side, slip_into};
-use crate::contact::stick_point::distance;
+use crate::contact::stick_point::{ahead, distance};
 use crate::model::{Bond, Contact, Surface};
 use crate::plane::{self, dot, length, minus, unit};
 use crate::{
@@ -504,11 +504,10 @@ fn touching(
         if give == 0.0 {
             return way;
         }
-        let element = SurfaceElement::from_surface(surface, foot.spot.element);
-        let [now, before] = [seen.now, seen.before].map(|at| speed(element, at, foot.spot.xi));
         let length = give * seen.earlier[slave] - seen.anchored[slave];
-        let stretched = (length * (now / before - 1.0)).abs();
-        way.signum() * (way.abs() - stretched).max(0.0)
+        let anchor = ahead(surface, foot.spot, length, seen.before);
+        let stretched = distance(surface, foot.spot, anchor, seen.now) - length;
+        way - stretched
     };
     let here = earlier.iter().find(|f| f.spot.surface == spot.surface);
     let was = seen.was(slave);

@@ -29,6 +29,9 @@ const POINTS: [(f64, f64); 5] = [
     (0.906_179_845_938_664, 0.236_926_885_056_189_08),
 ];
 
+/// Newton steps to the point at a given distance; quadratic, from a point on the same element.
+const NEWTON_STEPS: usize = 8;
+
 /// Where a node that was free at the start of a major iteration touched: the point S* − g ρ t (eqn 14) where its straight path
 /// meets the surface. `None` beyond the ends of its surface.
 ///
@@ -85,7 +88,59 @@ pub fn distance(
     }
 }
 
-/// The same for `from.element <= to.element`.
+/// The point at a signed distance along the surface from another one; beyond an end, on the end's element continued.
+pub fn ahead(
+    surface: &Surface,
+    from: SurfacePoint,
+    by: f64,
+    positions: &[[f64; 2]],
+) -> SurfacePoint {
+    let part = |at: SurfacePoint, xi: f64| {
+        let element = SurfaceElement::from_surface(surface, at.element);
+        length(element, at.xi, xi, positions)
+    };
+    let (mut at, mut left, count) = (from, by, surface.elements.len());
+    let end = by.signum();
+    // On a closed surface no distance is longer than the way round.
+    for _ in 0..count {
+        let rest = part(at, end);
+        let next = match (at.element, end > 0.0) {
+            (last, true) if last + 1 == count => closed(surface).then_some(0),
+            (element, true) => Some(element + 1),
+            (0, false) => closed(surface).then_some(count - 1),
+            (element, false) => Some(element - 1),
+        };
+        match next.filter(|_| rest.abs() < left.abs() && (end - at.xi) * end >= 0.0) {
+            Some(element) => {
+                left -= rest;
+                at = SurfacePoint {
+                    element,
+                    xi: -end,
+                    ..at
+                };
+            }
+            None => break,
+        }
+    }
+    let start = at;
+    for _ in 0..NEWTON_STEPS {
+        let element = SurfaceElement::from_surface(surface, at.element);
+        let places = ElementPositions::from_nodes(element.nodes, positions);
+        let [slopes] = element.slopes_at([at.xi]);
+        let speed = span(places.sum(&slopes));
+        let step = (left - part(start, at.xi)) / speed;
+        if !step.is_finite() {
+            break;
+        }
+        at.xi += step;
+        if step.abs() <= f64::EPSILON {
+            break;
+        }
+    }
+    at
+}
+
+/// The same as [`distance`] for `from.element <= to.element`.
 fn walk(surface: &Surface, from: SurfacePoint, to: SurfacePoint, positions: &[[f64; 2]]) -> f64 {
     let part = |element: usize, from: f64, to: f64| {
         length(
@@ -180,6 +235,31 @@ mod tests {
         assert!((there + 1.0).abs() < 1e-15, "{there}");
         let back = distance(&s, spot(3, 0.0), spot(0, 0.0), &x);
         assert!((back - 1.0).abs() < 1e-15, "{back}");
+    }
+
+    #[test]
+    fn the_point_at_a_distance_lies_at_that_distance() {
+        let (s, x) = arc();
+        let cases = [
+            (spot(0, -0.4), 0.3),
+            (spot(0, 0.2), 0.9),
+            (spot(1, 0.1), -0.8),
+            (spot(1, -1.0), 0.0),
+        ];
+        for (from, by) in cases {
+            let there = ahead(&s, from, by, &x);
+            assert!(there.xi.abs() <= 1.0, "{there:?}");
+            let found = distance(&s, from, there, &x);
+            assert!((found - by).abs() < 1e-6, "{found} {by}");
+        }
+        let whole = distance(&s, spot(0, -1.0), spot(1, 1.0), &x);
+        let beyond = ahead(&s, spot(0, -1.0), whole + 0.01, &x);
+        assert!(beyond.element == 1 && beyond.xi > 1.0, "{beyond:?}");
+
+        let x = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+        let s = surface(vec![vec![0, 1], vec![1, 2], vec![2, 3], vec![3, 0]]);
+        assert_eq!(ahead(&s, spot(3, 0.5), 0.5, &x), spot(0, -0.5));
+        assert_eq!(ahead(&s, spot(0, -0.5), -0.5, &x), spot(3, 0.5));
     }
 
     #[test]

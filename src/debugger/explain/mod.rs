@@ -14,6 +14,7 @@
 //!   steps reach; [`surface_end`]: nodes behind the end of their surface; [`moves_away`]: a damped
 //!   motion that leaves the last equilibrium; [`restart`]: trials of a changed scene.
 //! - [`touch`]: how far the forces depend on where nodes in new contact are held.
+//!   [`unforced`]: bodies that move although no force acts on them.
 //! - [`examination`]: the frozen problem of a state; [`page`]: the whole diagnosis, as the debugger shows it; [`headline`]: what
 //!   happened in one line; [`facts`]: the parts of the page; [`try_list`]: what can be done, with the outcome of each trial.
 //! - [`attached`]: the diagnosis for an attached solver, from the problem that it reports; [`interface_scene`]: that problem
@@ -64,4 +65,5 @@ pub mod tested;
 pub mod touch;
 pub mod trail;
 pub mod try_list;
+pub mod unforced;
 pub mod walk;

@@ -24,7 +24,7 @@ const TOUCHES: f64 = 1e-9;
 pub(super) fn check(here: &Path, group: &SlaveSpec) -> Result<(), Fault> {
     if let Some(stiffness) = group.law.stiffness() {
         let place = here.then("law").then("stiffness");
-        limits::positive(&place, stiffness, "the stiffness")?;
+        limits::stiffness(&place, stiffness, "the stiffness")?;
     }
     if !group.by.is_node() && group.law.stiffness().is_none() {
         bail!(
@@ -39,7 +39,7 @@ pub(super) fn check(here: &Path, group: &SlaveSpec) -> Result<(), Fault> {
         );
     }
     if let Some(stick) = group.stick {
-        limits::positive(&here.then("stick"), stick, "the stick stiffness")?;
+        limits::stiffness(&here.then("stick"), stick, "the stick stiffness")?;
     }
     if let Some(area) = group.area {
         limits::positive(&here.then("area"), area, "the tributary area")?;

@@ -1,0 +1,150 @@
+//! Finds bodies that move although no force acts on them.
+//!
+//! A body that only contacts hold is in equilibrium wherever it lies if all of its contact forces are zero. The states are
+//! accepted, because they obey every law, but its position follows from the course of the iterations.
+
+use std::collections::HashSet;
+use std::ops::RangeInclusive;
+use stickslip_core::contact::record::ContactRecord;
+use stickslip_core::model::{BodyKind, diagonal};
+use stickslip_core::{Body, Model, Norms};
+use stickslip_scene::{shortest, sig4};
+
+/// Contact forces below this part of the force scale are round-off.
+const NO_FORCE: f64 = 1e-9;
+/// Motions below this part of the scene's length are not reported: a body that is let go moves as its strains recover.
+const NO_MOTION: f64 = 1e-3;
+
+/// A body that only contacts hold.
+struct FreeBody {
+    body: usize,
+    contacts: Vec<usize>,
+    /// Where it moved without a force: first and last increment, and load.
+    moved: Option<(RangeInclusive<u32>, [f64; 2])>,
+    /// The farthest that a node of it moved in one increment (length).
+    farthest: f64,
+}
+
+/// Watches the accepted increments of a run for bodies that move without a force.
+pub struct UnforcedWatch {
+    bodies: Vec<FreeBody>,
+    /// Positions after the last accepted increment.
+    places: Vec<[f64; 2]>,
+    length: f64,
+}
+
+impl UnforcedWatch {
+    /// Starts to watch a run of a model from a state; `u` are its displacements.
+    pub fn new(model: &Model, u: &[f64]) -> UnforcedWatch {
+        let free = (0..model.bodies.len()).filter_map(|body| FreeBody::new(model, body));
+        UnforcedWatch {
+            bodies: free.collect(),
+            places: model.places(u),
+            length: diagonal(model.nodes.iter()),
+        }
+    }
+
+    /// Records an accepted increment: its number and load, and its contacts, norms and displacements at its end.
+    pub fn see(
+        &mut self,
+        model: &Model,
+        (increment, load): (u32, f64),
+        contacts: &[ContactRecord],
+        norms: &Norms,
+        u: &[f64],
+    ) {
+        let size = |contact: &ContactRecord| contact.f_n.hypot(contact.f_t);
+        let places = model.places(u);
+        for free in &mut self.bodies {
+            let force = free.contacts.iter().map(|&c| size(&contacts[c]));
+            if force.fold(0.0, f64::max) > NO_FORCE * norms.scale {
+                continue;
+            }
+            let nodes = model.bodies[free.body].nodes.iter();
+            let motion = nodes
+                .map(|&node| {
+                    let ([x, y], [was_x, was_y]) = (places[node], self.places[node]);
+                    (x - was_x).hypot(y - was_y)
+                })
+                .fold(0.0, f64::max);
+            if motion <= NO_MOTION * self.length {
+                continue;
+            }
+            free.farthest = free.farthest.max(motion);
+            let first = free
+                .moved
+                .as_ref()
+                .map(|(seen, [from, _])| (*seen.start(), *from));
+            let (start, from) = first.unwrap_or((increment, load));
+            free.moved = Some((start..=increment, [from, load]));
+        }
+        self.places = places;
+    }
+
+    /// Positions of all nodes after the last accepted increment.
+    pub fn places(&self) -> &[[f64; 2]] {
+        &self.places
+    }
+
+    /// One sentence per body that moved without a force.
+    pub fn found(&self, model: &Model) -> Vec<String> {
+        let moved = self.bodies.iter().filter_map(|free| {
+            let (seen, [from, to]) = free.moved.as_ref()?;
+            let name = &model.bodies[free.body].name;
+            let within = match (seen.start(), seen.end()) {
+                (first, last) if first == last => {
+                    format!("in increment {first} (load {})", shortest(*to))
+                }
+                (first, last) => format!(
+                    "in increments {first} to {last} (load {} to {})",
+                    shortest(*from),
+                    shortest(*to)
+                ),
+            };
+            Some(format!(
+                "body {name} moved by up to {} {within} although no force acts on it: equilibrium does not determine where \
+                 it lies; support it, or hold it by soft springs",
+                sig4(free.farthest)
+            ))
+        });
+        moved.collect()
+    }
+}
+
+impl FreeBody {
+    /// `None` for bodies that are held otherwise: by supports, other bodies or ties.
+    fn new(model: &Model, body: usize) -> Option<FreeBody> {
+        let own: HashSet<usize> = model.bodies[body].nodes.iter().copied().collect();
+        let resists_strains =
+            |body: &Body| matches!(body.kind, BodyKind::Beam(_) | BodyKind::Solid(_));
+        let is_free = |node: usize| {
+            let dofs = model.dofs.of_node(node);
+            model.dofs.equation[dofs].iter().all(Option::is_some)
+        };
+        let shares = |(other, with): (usize, &Body)| {
+            other != body && with.nodes.iter().any(|node| own.contains(node))
+        };
+        if !resists_strains(&model.bodies[body])
+            || !own.iter().all(|&node| is_free(node))
+            || model.bodies.iter().enumerate().any(shares)
+        {
+            return None;
+        }
+        let on_own = |surface: &usize| {
+            let mut nodes = model.surfaces[*surface].elements.iter().flatten();
+            nodes.any(|node| own.contains(node))
+        };
+        let touches = |&contact: &usize| {
+            let contact = &model.contacts[contact];
+            own.contains(&contact.node) || contact.surfaces.iter().any(on_own)
+        };
+        let contacts: Vec<usize> = (0..model.contacts.len()).filter(touches).collect();
+        let tied = contacts.iter().any(|&c| model.contacts[c].bond.is_tied());
+        (!contacts.is_empty() && !tied).then_some(FreeBody {
+            body,
+            contacts,
+            moved: None,
+            farthest: 0.0,
+        })
+    }
+}

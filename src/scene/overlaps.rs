@@ -1,0 +1,151 @@
+//! Solids that overlap: a node of one lies inside the outline of another, which is straight between nodes.
+//!
+//! Contact acts at slave nodes that face a surface. Where none does, bodies pass through each other although every law of contact
+//! holds.
+
+use crate::number::sig4;
+use std::cell::LazyCell;
+use std::collections::HashSet;
+use stickslip_core::plane::{depth_inside, range};
+use stickslip_core::{Body, Model};
+
+/// Depths at the start below the square root of this part of the scene's length are none.
+const NONE: f64 = 1e-9;
+/// Depths that are reported after a run: those by which an overlap has grown, relative to the diagonal of the smaller body. Between
+/// the slave nodes of a coarse mesh a master's nodes are a little inside.
+const DEEP: f64 = 0.01;
+
+/// A node of a solid inside another one.
+struct Overlap {
+    /// Numbers of the outer body, and of the body of the node.
+    bodies: [usize; 2],
+    /// The deepest node.
+    node: usize,
+    /// The first node inside, along the sides of its body.
+    first: usize,
+    /// Distance of the deepest node from the outline (length).
+    depth: f64,
+    /// Diagonal of the smaller body (length).
+    size: f64,
+}
+
+/// Describes pairs of solids that overlap before the first solve.
+pub(crate) fn at_start(model: &Model) -> Vec<String> {
+    let near = NONE.sqrt() * model.length;
+    let places: Vec<[f64; 2]> = model.nodes.iter().map(|node| node.at).collect();
+    let found = overlaps(model, &places, near);
+    found
+        .iter()
+        .map(|Overlap { bodies, first, .. }| {
+            let [outer, inner] = bodies.map(|body| &model.bodies[body].name);
+            format!(
+                "bodies {outer} and {inner} overlap: {} of the second lies inside the first",
+                model.nodes[*first].name
+            )
+        })
+        .collect()
+}
+
+/// Describes pairs of solids that overlap after a run, at these positions: deeper than at the start, and deeper than `soft` (length),
+/// the largest penetration that the contact laws allow.
+pub fn at_end(model: &Model, places: &[[f64; 2]], soft: f64) -> Vec<String> {
+    let start: Vec<[f64; 2]> = model.nodes.iter().map(|node| node.at).collect();
+    let near = NONE.sqrt() * model.length;
+    let before = overlaps(model, &start, near);
+    let mut all = Vec::new();
+    let mut pairs = HashSet::new();
+    for found in overlaps(model, places, near) {
+        let was = before.iter().filter(|was| was.bodies == found.bodies);
+        let was = was.map(|was| was.depth).fold(0.0, f64::max);
+        let [a, b] = found.bodies;
+        if found.depth - was - soft <= DEEP * found.size || !pairs.insert([a.min(b), a.max(b)]) {
+            continue;
+        }
+        let [outer, inner] = found.bodies.map(|body| &model.bodies[body].name);
+        all.push(format!(
+            "bodies {outer} and {inner} overlap in the last accepted state: {} of the second lies inside the first by {}. Contact acts \
+             only at slave nodes that face a surface: make the side with the finer mesh the slave, or define contact of the sides \
+             that meet there",
+            model.nodes[found.node].name,
+            sig4(found.depth)
+        ));
+    }
+    all
+}
+
+/// Pairs of solids where a node of one lies deeper than `near` inside the outline of the other, each with its deepest node.
+fn overlaps(model: &Model, places: &[[f64; 2]], near: f64) -> Vec<Overlap> {
+    let solids: Vec<(usize, &Body, Outline)> = (model.bodies.iter().enumerate())
+        .filter_map(|(k, body)| Some((k, body, Outline::new(places, &body.solid()?.edges))))
+        .collect();
+    let mut all = Vec::new();
+    for (a, body, outline) in &solids {
+        let own = LazyCell::new(|| body.nodes.iter().copied().collect::<HashSet<usize>>());
+        for (b, other, others) in &solids {
+            if a == b || !outline.meets(others) {
+                continue;
+            }
+            let mut deepest: Option<(usize, f64)> = None;
+            let mut first = None;
+            for &node in other.kind.lines().iter().flatten() {
+                let depth = outline.depth(places[node], near);
+                if depth > deepest.map_or(near, |(_, depth)| depth) && !own.contains(&node) {
+                    deepest = Some((node, depth));
+                    first = first.or(deepest);
+                }
+            }
+            let found = first.zip(deepest);
+            all.extend(found.map(|((first, _), (node, depth))| Overlap {
+                bodies: [*a, *b],
+                node,
+                first,
+                depth,
+                size: outline.diagonal().min(others.diagonal()),
+            }));
+        }
+    }
+    all
+}
+
+/// A closed outline, straight between nodes.
+struct Outline {
+    sides: Vec<[[f64; 2]; 2]>,
+    /// Smallest and largest coordinates.
+    low: [f64; 2],
+    high: [f64; 2],
+}
+
+impl Outline {
+    fn new(places: &[[f64; 2]], edges: &[Vec<usize>]) -> Self {
+        let sides = edges
+            .iter()
+            .flat_map(|edge| edge.windows(2))
+            .map(|pair| [places[pair[0]], places[pair[1]]]);
+        let sides: Vec<[[f64; 2]; 2]> = sides.collect();
+        let [x, y] = [0, 1].map(|axis| range(sides.iter().flatten().map(|end| end[axis])));
+        Outline {
+            low: [x[0], y[0]],
+            high: [x[1], y[1]],
+            sides,
+        }
+    }
+
+    fn diagonal(&self) -> f64 {
+        (self.high[0] - self.low[0]).hypot(self.high[1] - self.low[1])
+    }
+
+    /// Whether the bounding boxes have a point in common.
+    fn meets(&self, other: &Outline) -> bool {
+        (0..2).all(|k| self.low[k] <= other.high[k] && other.low[k] <= self.high[k])
+    }
+
+    /// The distance of a point from the sides, if it lies inside by more than `near` from each side; otherwise 0.
+    fn depth(&self, at: [f64; 2], near: f64) -> f64 {
+        let inside_box = (0..2).all(|k| at[k] - self.low[k] > near && self.high[k] - at[k] > near);
+        if inside_box {
+            depth_inside(&self.sides, at)
+        } else {
+            0.0
+        }
+    }
+}
