@@ -14,8 +14,8 @@
 //! ```
 //!
 //! Only the upper half of the matrix is used. The symbolic factorization is done on groups of unknowns with the same rows, such as
-//! the two of a node, because this takes less time. The matrix is factored without pivoting. This is stable if no pivot is negative, because
-//! the terms of the factorization are then no larger than the matrix. With negative pivots the size of the terms is
+//! the two of a node, because this takes less time. The matrix is factored without pivoting. This is stable if no pivot is negative,
+//! because the terms of the factorization are then no larger than the matrix. With negative pivots the size of the terms is
 //! checked ([`SymmetricFactors::factor`]); if it is too large, the caller uses [`super::Factors`].
 
 use super::check::{SolveError, UNDERFLOW, largest};

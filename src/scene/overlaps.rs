@@ -9,8 +9,8 @@ use std::collections::HashSet;
 use stickslip_core::plane::{depth_inside, range};
 use stickslip_core::{Body, Model};
 
-/// Depths at the start below the square root of this part of the scene's length are none.
-const NONE: f64 = 1e-9;
+/// Depths below this part of the scene's length are none.
+const NONE: f64 = 3e-5;
 /// Depths that are reported after a run: those by which an overlap has grown, relative to the diagonal of the smaller body. Between
 /// the slave nodes of a coarse mesh a master's nodes are a little inside.
 const DEEP: f64 = 0.01;
@@ -27,11 +27,13 @@ struct Overlap {
     depth: f64,
     /// Diagonal of the smaller body (length).
     size: f64,
+    /// How far the curved sides of both bodies are from straight ones between nodes (length).
+    bend: f64,
 }
 
 /// Describes pairs of solids that overlap before the first solve.
 pub(crate) fn at_start(model: &Model) -> Vec<String> {
-    let near = NONE.sqrt() * model.length;
+    let near = NONE * model.length;
     let places: Vec<[f64; 2]> = model.nodes.iter().map(|node| node.at).collect();
     let found = overlaps(model, &places, near);
     found
@@ -50,7 +52,7 @@ pub(crate) fn at_start(model: &Model) -> Vec<String> {
 /// the largest penetration that the contact laws allow.
 pub fn at_end(model: &Model, places: &[[f64; 2]], soft: f64) -> Vec<String> {
     let start: Vec<[f64; 2]> = model.nodes.iter().map(|node| node.at).collect();
-    let near = NONE.sqrt() * model.length;
+    let near = NONE * model.length;
     let before = overlaps(model, &start, near);
     let mut all = Vec::new();
     let mut pairs = HashSet::new();
@@ -58,7 +60,9 @@ pub fn at_end(model: &Model, places: &[[f64; 2]], soft: f64) -> Vec<String> {
         let was = before.iter().filter(|was| was.bodies == found.bodies);
         let was = was.map(|was| was.depth).fold(0.0, f64::max);
         let [a, b] = found.bodies;
-        if found.depth - was - soft <= DEEP * found.size || !pairs.insert([a.min(b), a.max(b)]) {
+        if found.depth - was - soft - found.bend <= DEEP * found.size
+            || !pairs.insert([a.min(b), a.max(b)])
+        {
             continue;
         }
         let [outer, inner] = found.bodies.map(|body| &model.bodies[body].name);
@@ -101,6 +105,7 @@ fn overlaps(model: &Model, places: &[[f64; 2]], near: f64) -> Vec<Overlap> {
                 first,
                 depth,
                 size: outline.diagonal().min(others.diagonal()),
+                bend: outline.bend + others.bend,
             }));
         }
     }
@@ -113,6 +118,8 @@ struct Outline {
     /// Smallest and largest coordinates.
     low: [f64; 2],
     high: [f64; 2],
+    /// How far a curved side is at most from the straight ones between its nodes (length).
+    bend: f64,
 }
 
 impl Outline {
@@ -123,9 +130,17 @@ impl Outline {
             .map(|pair| [places[pair[0]], places[pair[1]]]);
         let sides: Vec<[[f64; 2]; 2]> = sides.collect();
         let [x, y] = [0, 1].map(|axis| range(sides.iter().flatten().map(|end| end[axis])));
+        // Half of a parabola is a quarter of the distance of its middle node from its own chord.
+        let bend = |nodes: &[usize]| {
+            let [a, b, c] = [0, 1, 2].map(|k| places[nodes[k]]);
+            let [x, y] = [0, 1].map(|k| b[k] - 0.5 * (a[k] + c[k]));
+            0.25 * x.hypot(y)
+        };
+        let bends = edges.iter().flat_map(|edge| edge.windows(3)).map(bend);
         Outline {
             low: [x[0], y[0]],
             high: [x[1], y[1]],
+            bend: bends.fold(0.0, f64::max),
             sides,
         }
     }
@@ -139,7 +154,7 @@ impl Outline {
         (0..2).all(|k| self.low[k] <= other.high[k] && other.low[k] <= self.high[k])
     }
 
-    /// The distance of a point from the sides, if it lies inside by more than `near` from each side; otherwise 0.
+    /// The distance of a point inside from the sides; 0 outside, and for points within `near` of the bounding box.
     fn depth(&self, at: [f64; 2], near: f64) -> f64 {
         let inside_box = (0..2).all(|k| at[k] - self.low[k] > near && self.high[k] - at[k] > near);
         if inside_box {

@@ -176,6 +176,42 @@ fn a_body_that_moves_without_a_force_is_warned_of() {
     assert!(!warned(&["--set", "loads[1].value=0.005"]));
 }
 
+/// The lid is open throughout; the points of the contact below are nodes of no body.
+#[test]
+fn a_block_carried_by_face_contact_moves_with_a_force() {
+    let directory = tempfile::tempdir().unwrap();
+    let text = r#"(
+    title: "A carried block under a lid that does not touch",
+    nodes: [
+        Block(id: "base", corners: [(-0.5, 0.0), (1.5, 0.5)], elements: (2, 1)),
+        Block(id: "b", corners: [(0.0, 0.5), (1.0, 1.0)], elements: (2, 1)),
+        Block(id: "lid", corners: [(-0.5, 1.2), (1.5, 1.5)], elements: (2, 1)),
+    ],
+    materials: [Elastic(id: "soft", E: 1000.0, nu: 0.2)],
+    bodies: [
+        Solid(id: "base", mesh: "base", material: "soft"),
+        Solid(id: "b", mesh: "b", material: "soft"),
+        Solid(id: "lid", mesh: "lid", material: "soft"),
+    ],
+    surfaces: [(id: "below", along: "base.top"), (id: "above", along: "b.top")],
+    slaves: [
+        (nodes: ["b.bottom"], on: ["below"], law: Penalty(stiffness: 1e5), by: surface, friction: (angle: 30.0)),
+        (nodes: ["lid.bottom"], on: ["above"]),
+    ],
+    supports: [(node: "base.bottom", fix: [y]), (node: "lid.top", fix: [x, y])],
+    loads: [
+        Force(node: "b.top.2", y: -1.0, scale: [(0.0, 1.0), (1.0, 1.0)]),
+        Displacement(node: "base.bottom", component: x, value: 0.2),
+    ],
+    history: (path: [0.0, 1.0], increment: 0.5),
+)"#;
+    let scene = directory.path().join("carried.ron");
+    std::fs::write(&scene, text).unwrap();
+    let output = ran(&["run", scene.to_str().unwrap(), "--quiet"]);
+    assert_eq!(code(&output), 0, "{}", err(&output));
+    assert!(!err(&output).contains("no force"), "{}", err(&output));
+}
+
 /// Both nodes of the base's top lie beyond the ends of the pad's bottom; the other way round, the pad's nodes lie over the base.
 #[test]
 fn bodies_that_overlap_after_a_run_are_warned_of() {

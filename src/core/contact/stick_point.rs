@@ -250,7 +250,7 @@ mod tests {
             let there = ahead(&s, from, by, &x);
             assert!(there.xi.abs() <= 1.0, "{there:?}");
             let found = distance(&s, from, there, &x);
-            assert!((found - by).abs() < 1e-6, "{found} {by}");
+            assert!((found - by).abs() < 1e-12, "{found} {by}");
         }
         let whole = distance(&s, spot(0, -1.0), spot(1, 1.0), &x);
         let beyond = ahead(&s, spot(0, -1.0), whole + 0.01, &x);

@@ -1,9 +1,8 @@
 //! Finds bodies that move although no force acts on them.
 //!
 //! A body that only contacts hold is in equilibrium wherever it lies if all of its contact forces are zero. The states are
-//! accepted, because they obey every law, but its position follows from the course of the iterations.
+//! accepted, because they obey every law, but its position may follow from the course of the iterations.
 
-use std::collections::HashSet;
 use std::ops::RangeInclusive;
 use stickslip_core::contact::record::ContactRecord;
 use stickslip_core::model::{BodyKind, diagonal};
@@ -36,9 +35,8 @@ pub struct UnforcedWatch {
 impl UnforcedWatch {
     /// Starts to watch a run of a model from a state; `u` are its displacements.
     pub fn new(model: &Model, u: &[f64]) -> UnforcedWatch {
-        let free = (0..model.bodies.len()).filter_map(|body| FreeBody::new(model, body));
         UnforcedWatch {
-            bodies: free.collect(),
+            bodies: free_bodies(model),
             places: model.places(u),
             length: diagonal(model.nodes.iter()),
         }
@@ -102,8 +100,8 @@ impl UnforcedWatch {
                 ),
             };
             Some(format!(
-                "body {name} moved by up to {} {within} although no force acts on it: equilibrium does not determine where \
-                 it lies; support it, or hold it by soft springs",
+                "body {name} moved by up to {} {within} although no force acts on it: its place may depend on the course of \
+                 the iterations; support it, or hold it by soft springs",
                 sig4(free.farthest)
             ))
         });
@@ -111,40 +109,56 @@ impl UnforcedWatch {
     }
 }
 
-impl FreeBody {
-    /// `None` for bodies that are held otherwise: by supports, other bodies or ties.
-    fn new(model: &Model, body: usize) -> Option<FreeBody> {
-        let own: HashSet<usize> = model.bodies[body].nodes.iter().copied().collect();
-        let resists_strains =
-            |body: &Body| matches!(body.kind, BodyKind::Beam(_) | BodyKind::Solid(_));
-        let is_free = |node: usize| {
-            let dofs = model.dofs.of_node(node);
-            model.dofs.equation[dofs].iter().all(Option::is_some)
-        };
-        let shares = |(other, with): (usize, &Body)| {
-            other != body && with.nodes.iter().any(|node| own.contains(node))
-        };
-        if !resists_strains(&model.bodies[body])
-            || !own.iter().all(|&node| is_free(node))
-            || model.bodies.iter().enumerate().any(shares)
-        {
-            return None;
+/// The bodies that only contacts hold: no supports, other bodies or ties.
+fn free_bodies(model: &Model) -> Vec<FreeBody> {
+    /// Marks nodes of several bodies, or of none.
+    const NO_OWNER: usize = usize::MAX;
+    let mut owner = vec![NO_OWNER; model.nodes.len()];
+    let mut shared = vec![false; model.nodes.len()];
+    for (number, body) in model.bodies.iter().enumerate() {
+        for &node in &body.nodes {
+            shared[node] |= owner[node] != NO_OWNER && owner[node] != number;
+            owner[node] = number;
         }
-        let on_own = |surface: &usize| {
-            let mut nodes = model.surfaces[*surface].elements.iter().flatten();
-            nodes.any(|node| own.contains(node))
-        };
-        let touches = |&contact: &usize| {
-            let contact = &model.contacts[contact];
-            own.contains(&contact.node) || contact.surfaces.iter().any(on_own)
-        };
-        let contacts: Vec<usize> = (0..model.contacts.len()).filter(touches).collect();
-        let tied = contacts.iter().any(|&c| model.contacts[c].bond.is_tied());
-        (!contacts.is_empty() && !tied).then_some(FreeBody {
+    }
+    let is_free = |node: usize| {
+        let dofs = model.dofs.of_node(node);
+        !shared[node] && model.dofs.equation[dofs].iter().all(Option::is_some)
+    };
+    let is_held = |body: &Body| {
+        let resists_strains = matches!(body.kind, BodyKind::Beam(_) | BodyKind::Solid(_));
+        !resists_strains || !body.nodes.iter().all(|&node| is_free(node))
+    };
+    let mut held: Vec<bool> = model.bodies.iter().map(is_held).collect();
+    let distinct = |nodes: &mut dyn Iterator<Item = usize>| {
+        let bodies = nodes.map(|node| owner[node]).filter(|&b| b != NO_OWNER);
+        let mut bodies: Vec<usize> = bodies.collect();
+        bodies.sort_unstable();
+        bodies.dedup();
+        bodies
+    };
+    let surfaces = model.surfaces.iter();
+    let under: Vec<Vec<usize>> = surfaces
+        .map(|surface| distinct(&mut surface.elements.iter().flatten().copied()))
+        .collect();
+    let mut contacts: Vec<Vec<usize>> = vec![Vec::new(); model.bodies.len()];
+    for (number, contact) in model.contacts.iter().enumerate() {
+        let masters = contact.surfaces.iter().flat_map(|&surface| &under[surface]);
+        let slaves = distinct(&mut contact.carriers().map(|(node, _)| node));
+        for &body in masters.chain(&slaves) {
+            held[body] |= contact.bond.is_tied();
+            if contacts[body].last() != Some(&number) {
+                contacts[body].push(number);
+            }
+        }
+    }
+    let free = contacts.into_iter().zip(held).enumerate();
+    free.filter(|(_, (contacts, held))| !held && !contacts.is_empty())
+        .map(|(body, (contacts, _))| FreeBody {
             body,
             contacts,
             moved: None,
             farthest: 0.0,
         })
-    }
+        .collect()
 }
