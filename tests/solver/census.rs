@@ -16,6 +16,11 @@ use stickslip::step::event::Failure;
 use stickslip::step::stepper::Stepper;
 use stickslip::study::random::Population;
 
+const TWO_BLOCKS: &str = concat!(
+    env!("CARGO_MANIFEST_DIR"),
+    "/tests/benches/two-blocks-pressed-sheared.ron"
+);
+
 #[test]
 fn where_free_and_fixed_take_turns_sliding_is_the_one_answer() {
     for solver in ["augmented", "condensed"] {
@@ -139,6 +144,26 @@ fn twenty_nodes_are_counted_and_each_state_counted_obeys() {
         })
         .to_vec();
     assert_eq!(counts, [1, 1, 1, 0]);
+}
+
+#[test]
+fn states_of_a_meshed_surface_are_counted_exactly_in_every_minor_iteration() {
+    let set = [("refine", "2"), ("history.increment", "1.0")];
+    let scene = scene(TWO_BLOCKS, &set);
+    let mut stepper = Stepper::new(Arc::new(scene.model));
+    let mut searched = 0;
+    while searched < 6 {
+        let position = stepper.step().unwrap().position;
+        if position.increment < 2 {
+            continue;
+        }
+        let problem = stepper.interface_problem().unwrap();
+        let found = search(&problem, BUDGET, &never).unwrap();
+        let answers = found.answers.len();
+        println!("{position:?}: {answers} after {}", found.visited);
+        assert!(found.exact && answers == 1 && found.visited < 5000);
+        searched += 1;
+    }
 }
 
 #[test]

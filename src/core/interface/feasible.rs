@@ -168,6 +168,7 @@ impl BoundedForms {
             return false;
         }
         self.clamp();
+        let mut restarted = false;
         for _ in 0..20 * self.bounds.len() {
             let Some((row, to)) = self.broken() else {
                 return true;
@@ -176,6 +177,11 @@ impl BoundedForms {
                 Some(column) => self.pivot(row, column, to),
                 None if self.is_proven(row, to) => return false,
                 None if self.since > 0 => self.renew(),
+                // These columns may determine the coordinates badly; others may give a proof.
+                None if !restarted => {
+                    restarted = true;
+                    self.restart();
+                }
                 None => return true,
             }
             if self.since > FRESH {
@@ -256,13 +262,20 @@ impl BoundedForms {
         found
     }
 
+    /// Rebuilds the tableau with the same columns.
     fn renew(&mut self) {
         let columns = self.columns.clone();
-        if self.make(&columns).is_none() {
-            let any: Vec<usize> = (0..self.bounds.len()).collect();
-            // They determined the coordinates initially.
-            let _ = self.make(&any);
+        match self.make(&columns) {
+            Some(()) => self.clamp(),
+            None => self.restart(),
         }
+    }
+
+    /// Rebuilds the tableau with the columns that determine the coordinates best.
+    fn restart(&mut self) {
+        let any: Vec<usize> = (0..self.bounds.len()).collect();
+        // They determined the coordinates initially.
+        let _ = self.make(&any);
         self.clamp();
     }
 
