@@ -90,11 +90,18 @@ fn in_units(spec: &Spec, length: f64, force: f64) -> Spec {
         }
     }
     for body in &mut spec.bodies {
-        if let BodySpec::Solid { regions, .. } = body {
-            for region in regions {
-                place(&mut region.from);
-                place(&mut region.to);
+        match body {
+            BodySpec::Solid { regions, .. } => {
+                for region in regions {
+                    place(&mut region.from);
+                    place(&mut region.to);
+                }
             }
+            BodySpec::Springs { bars, .. } => {
+                bars.iter_mut()
+                    .for_each(|bar| bar.stiffness *= force / length);
+            }
+            _ => {}
         }
     }
     spec.friction.cohesion *= force;
@@ -130,6 +137,7 @@ fn a_scene_in_other_units_gives_the_same_answers_in_these_units() {
         ),
         (COARSE, Some(("history.increment", "0.1"))),
         ("hertz-cylinder-on-block", None),
+        ("tests/scales/tilted-block-in-a-slot.ron", None),
     ] {
         let set: Vec<_> = set.into_iter().collect();
         let original = scene(name, &set);

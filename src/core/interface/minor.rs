@@ -38,7 +38,8 @@ pub fn check(
     let ties = &check.ties;
     let (record, turned) = record(&before, kinematics, given, friction, check);
     let [normal, tangential] = given.motion;
-    node.travel = if normal.abs() > f64::MIN_POSITIVE {
+    // A motion below the tolerance, as at the start of a major iteration near equilibrium, has no direction.
+    node.travel = if normal.abs() > ties.length {
         tangential / normal
     } else {
         0.0
