@@ -1,6 +1,7 @@
 //! The search after a failed increment: scenes that fail without it, and the limit of its cost.
 
 use std::sync::Arc;
+use stickslip::linear::singular::Singular;
 use stickslip::scene::Scene;
 use stickslip::step::event::{Failure, Outcome};
 use stickslip::step::recovery::fallback::Fallback;
@@ -88,6 +89,36 @@ fn bodies_that_touch_without_a_gap_are_held_from_the_start() {
             matches!(without, Some(Failure::Singular(_))),
             "{name}: {without:?}"
         );
+    }
+}
+
+#[test]
+fn a_loose_start_with_many_contacts_tries_no_strategy() {
+    let file = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/tests/findings/stack-of-50-blocks.ron"
+    );
+    let mut ends = Vec::new();
+    for set in [&[][..], OFF] {
+        let set: Vec<_> = set
+            .iter()
+            .map(|(path, value): &(&str, &str)| ((*path).to_owned(), (*value).to_owned()))
+            .collect();
+        let scene = Scene::open(file, &set).unwrap_or_else(|error| panic!("{error}"));
+        let mut stepper = Stepper::new(Arc::new(scene.model));
+        ends.extend(stepper.step().map(|event| event.outcome.clone()));
+    }
+    let loose = |why: &Failure| match why {
+        Failure::Singular(Singular::Rigid { motions }) => motions.len(),
+        _ => 0,
+    };
+    match &ends[..] {
+        [Outcome::Fallback { why, by, .. }, Outcome::Failed(without)] => {
+            assert_eq!(*by, Fallback::Touching);
+            // Three rigid motions of each of the 48 blocks between the supported one and the one that is pressed.
+            assert_eq!([loose(why), loose(without)], [144; 2]);
+        }
+        _ => panic!("{ends:?}"),
     }
 }
 
