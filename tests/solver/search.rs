@@ -7,12 +7,14 @@ use stickslip::step::event::{Failure, Outcome};
 use stickslip::step::recovery::fallback::Fallback;
 use stickslip::step::stepper::Stepper;
 
-/// A run: how it ends, the fallbacks by which an increment was accepted, accepted jumps, and factorizations spent on searches.
+/// A run: how it ends, the fallbacks by which an increment was accepted, accepted jumps, factorizations spent on searches, and the
+/// last displacements.
 struct Run {
     failure: Option<Failure>,
     found: Vec<Fallback>,
     jumps: usize,
     spent: u32,
+    u: Vec<f64>,
 }
 
 fn run(name: &str, set: &[(&str, &str)]) -> Run {
@@ -39,11 +41,13 @@ fn run(name: &str, set: &[(&str, &str)]) -> Run {
         }
     }
     let spent = stepper.state().record.searched.spent;
+    let u = stepper.state().u.to_vec();
     Run {
         failure,
         found,
         jumps,
         spent,
+        u,
     }
 }
 
@@ -132,6 +136,27 @@ fn modes_that_cycle_at_the_least_increment_settle_in_smaller_parts() {
         searched.found
     );
     assert_eq!(searched.jumps, 0);
+}
+
+/// Without the change of the contact geometry in the tangent, the major iterations do not converge however small the increment: the
+/// search takes it in, keeps it, and finds the state of `geometry: consistent`.
+#[test]
+fn increments_that_diverge_with_frozen_geometry_are_found_with_the_consistent_one() {
+    let name = "frozen-geometry-diverges";
+    let searched = run(name, &[]);
+    assert_eq!(searched.failure, None);
+    let kept = searched
+        .found
+        .iter()
+        .filter(|by| **by == Fallback::Geometry);
+    assert_eq!(kept.count(), 1, "{:?}", searched.found);
+    assert_eq!(searched.jumps, 0);
+    assert!(run(name, OFF).failure.is_some());
+    let consistent = run(name, &[("settings.geometry", "consistent")]);
+    assert_eq!((consistent.failure, consistent.spent), (None, 0));
+    for (found, wanted) in searched.u.iter().zip(&consistent.u) {
+        assert!((found - wanted).abs() < 1e-6, "{found} {wanted}");
+    }
 }
 
 #[test]
