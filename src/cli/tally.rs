@@ -21,7 +21,7 @@ use stickslip_debugger::history::rounds::{self, CycleWatch};
 use stickslip_debugger::record::table;
 use stickslip_scene::number::UNREPORTED;
 use stickslip_scene::overlaps;
-use stickslip_scene::{Scene, aligned, joined, shortest, sig6};
+use stickslip_scene::{Scene, aligned, first_of, joined, shortest, sig6};
 
 /// Warnings that are printed individually; others are only counted.
 const MOST_WARNINGS: u32 = 10;
@@ -29,6 +29,8 @@ const MOST_WARNINGS: u32 = 10;
 const LEAST_SUMMARY: u32 = 3;
 /// Maximum number of slave nodes in the final table.
 const MOST_SLAVES: usize = 40;
+/// Maximum number of bodies named in a note about loose bodies.
+const MOST_LOOSE: usize = 8;
 /// Maximum number of load ranges or loads listed in a message about stability.
 pub const MOST_STRETCHES: usize = 8;
 
@@ -413,10 +415,19 @@ impl<'a> Tally<'a> {
             (first, last) if first == last => format!("increment {first}"),
             (first, last) => format!("increments {first} to {last}"),
         };
-        let loose = self.loose.iter();
-        let loose: Vec<String> = loose
-            .map(|(body, seen)| format!("loose until first contact: {body}, {}", within(seen)))
-            .collect();
+        // Bodies that were loose in the same increments share a line.
+        let mut alike: Vec<(&RangeInclusive<u32>, Vec<&str>)> = Vec::new();
+        for (body, seen) in &self.loose {
+            match alike.iter_mut().find(|(other, _)| *other == seen) {
+                Some((_, bodies)) => bodies.push(body),
+                None => alike.push((seen, vec![body])),
+            }
+        }
+        let loose = alike.iter().map(|(seen, bodies)| {
+            let named = first_of(bodies, MOST_LOOSE, ", ");
+            format!("loose until first contact: {named}, {}", within(seen))
+        });
+        let loose: Vec<String> = loose.collect();
         for line in loose {
             self.messages.note(line);
         }

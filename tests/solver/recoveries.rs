@@ -50,8 +50,9 @@ const SCENES: [Changed; 14] = [
 ];
 
 /// Scenes that only the search solves.
-const SEARCHED: [&str; 4] = [
+const SEARCHED: [&str; 5] = [
     "die",
+    "frozen-geometry-diverges",
     "stack-of-50-blocks",
     "modes-cycle-at-the-least-increment",
     "moves-to-another-equilibrium",

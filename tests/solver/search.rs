@@ -1,17 +1,20 @@
 //! The search after a failed increment: scenes that fail without it, and the limit of its cost.
 
 use std::sync::Arc;
+use stickslip::linear::singular::Singular;
 use stickslip::scene::Scene;
 use stickslip::step::event::{Failure, Outcome};
 use stickslip::step::recovery::fallback::Fallback;
 use stickslip::step::stepper::Stepper;
 
-/// A run: how it ends, the fallbacks by which an increment was accepted, accepted jumps, and factorizations spent on searches.
+/// A run: how it ends, the fallbacks by which an increment was accepted, accepted jumps, factorizations spent on searches, and the
+/// last displacements.
 struct Run {
     failure: Option<Failure>,
     found: Vec<Fallback>,
     jumps: usize,
     spent: u32,
+    u: Vec<f64>,
 }
 
 fn run(name: &str, set: &[(&str, &str)]) -> Run {
@@ -38,11 +41,13 @@ fn run(name: &str, set: &[(&str, &str)]) -> Run {
         }
     }
     let spent = stepper.state().record.searched.spent;
+    let u = stepper.state().u.to_vec();
     Run {
         failure,
         found,
         jumps,
         spent,
+        u,
     }
 }
 
@@ -92,6 +97,36 @@ fn bodies_that_touch_without_a_gap_are_held_from_the_start() {
 }
 
 #[test]
+fn a_loose_start_with_many_contacts_tries_no_strategy() {
+    let file = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/tests/findings/stack-of-50-blocks.ron"
+    );
+    let mut ends = Vec::new();
+    for set in [&[][..], OFF] {
+        let set: Vec<_> = set
+            .iter()
+            .map(|(path, value): &(&str, &str)| ((*path).to_owned(), (*value).to_owned()))
+            .collect();
+        let scene = Scene::open(file, &set).unwrap_or_else(|error| panic!("{error}"));
+        let mut stepper = Stepper::new(Arc::new(scene.model));
+        ends.extend(stepper.step().map(|event| event.outcome.clone()));
+    }
+    let loose = |why: &Failure| match why {
+        Failure::Singular(Singular::Rigid { motions }) => motions.len(),
+        _ => 0,
+    };
+    match &ends[..] {
+        [Outcome::Fallback { why, by, .. }, Outcome::Failed(without)] => {
+            assert_eq!(*by, Fallback::Touching);
+            // Three rigid motions of each of the 48 blocks between the supported one and the one that is pressed.
+            assert_eq!([loose(why), loose(without)], [144; 2]);
+        }
+        _ => panic!("{ends:?}"),
+    }
+}
+
+#[test]
 fn modes_that_cycle_at_the_least_increment_settle_in_smaller_parts() {
     let searched = run("modes-cycle-at-the-least-increment", &[]);
     assert_eq!(searched.failure, None);
@@ -101,6 +136,27 @@ fn modes_that_cycle_at_the_least_increment_settle_in_smaller_parts() {
         searched.found
     );
     assert_eq!(searched.jumps, 0);
+}
+
+/// Without the change of the contact geometry in the tangent, the major iterations do not converge however small the increment: the
+/// search takes it in, keeps it, and finds the state of `geometry: consistent`.
+#[test]
+fn increments_that_diverge_with_frozen_geometry_are_found_with_the_consistent_one() {
+    let name = "frozen-geometry-diverges";
+    let searched = run(name, &[]);
+    assert_eq!(searched.failure, None);
+    let kept = searched
+        .found
+        .iter()
+        .filter(|by| **by == Fallback::Geometry);
+    assert_eq!(kept.count(), 1, "{:?}", searched.found);
+    assert_eq!(searched.jumps, 0);
+    assert!(run(name, OFF).failure.is_some());
+    let consistent = run(name, &[("settings.geometry", "consistent")]);
+    assert_eq!((consistent.failure, consistent.spent), (None, 0));
+    for (found, wanted) in searched.u.iter().zip(&consistent.u) {
+        assert!((found - wanted).abs() < 1e-6, "{found} {wanted}");
+    }
 }
 
 #[test]

@@ -213,13 +213,17 @@ impl<'a> Frame<'a> {
     }
 
     /// Describes the motion of each body in a null vector.
-    fn name(&self, v: &[f64]) -> Vec<RigidMotion> {
-        let size = max_abs(v);
-        let moved = |b: &usize| v[3 * b..3 * b + 3].iter().any(|x| x.abs() > ZERO * size);
-        (0..self.model.bodies.len())
-            .filter(moved)
-            .map(|b| {
-                let (x, y, turn) = (v[3 * b], v[3 * b + 1], v[3 * b + 2] / self.model.length);
+    fn name(&self, v: &Row) -> Vec<RigidMotion> {
+        let size = max_abs(v.values());
+        let at = |column: usize| v.get(&column).copied().unwrap_or(0.0);
+        let mut bodies: Vec<usize> = v.keys().map(|column| column / 3).collect();
+        bodies.dedup();
+        bodies
+            .into_iter()
+            .map(|b| (b, [0, 1, 2].map(|k| at(3 * b + k))))
+            .filter(|(_, moved)| moved.iter().any(|x| x.abs() > ZERO * size))
+            .map(|(b, [x, y, turn])| {
+                let turn = turn / self.model.length;
                 let center = self.centers[b];
                 let motion = if (turn * self.model.length).abs() > ZERO * size {
                     LooseMotion::Rotation([center[0] - y / turn, center[1] + x / turn])
@@ -240,7 +244,7 @@ impl<'a> Frame<'a> {
 ///
 /// The bodies are eliminated one after the other, by a QR decomposition of the conditions that contain them, so that the cost grows
 /// with the number of bodies where each touches few others.
-fn null_space(conditions: Vec<Row>, bodies: usize) -> Vec<Vec<f64>> {
+fn null_space(conditions: Vec<Row>, bodies: usize) -> Vec<Row> {
     let mut waiting = vec![Vec::new(); bodies];
     let wait = |waiting: &mut Vec<Vec<Row>>, row: Row| {
         if let Some(first) = row.keys().next() {
@@ -260,17 +264,30 @@ fn null_space(conditions: Vec<Row>, bodies: usize) -> Vec<Vec<f64>> {
     let columns = 3 * bodies;
     let mut is_free = vec![true; columns];
     pivots.iter().for_each(|(pivot, _)| is_free[*pivot] = false);
+    // The pivots whose values contain each column, and for each pivot its place in the elimination.
+    let mut parts = vec![Vec::new(); columns];
+    for (place, (_, row)) in pivots.iter().enumerate() {
+        row.keys().for_each(|&column| parts[column].push(place));
+    }
     let free = (0..columns).filter(|column| is_free[*column]);
-    let mut basis: Vec<Vec<f64>> = free
+    let mut basis: Vec<Row> = free
         .map(|column| {
-            let mut v = vec![0.0; columns];
-            v[column] = 1.0;
-            for (pivot, row) in pivots.iter().rev() {
-                let sum: f64 = row.iter().map(|(column, a)| a * v[*column]).sum();
-                v[*pivot] = -sum;
+            let mut v = Row::from([(column, 1.0)]);
+            let mut next: BTreeSet<usize> = parts[column].iter().copied().collect();
+            while let Some(place) = next.pop_last() {
+                let (pivot, row) = &pivots[place];
+                let sum: f64 = row
+                    .iter()
+                    .filter_map(|(column, a)| Some(a * v.get(column)?))
+                    .sum();
+                if sum != 0.0 {
+                    v.insert(*pivot, -sum);
+                    next.extend(&parts[*pivot]);
+                }
             }
-            let size = v.iter().map(|x| x * x).sum::<f64>().sqrt();
-            v.iter().map(|x| x / size).collect()
+            let size = v.values().map(|x| x * x).sum::<f64>().sqrt();
+            v.values_mut().for_each(|x| *x /= size);
+            v
         })
         .collect();
     reduce(&mut basis, columns);
@@ -316,35 +333,58 @@ fn eliminated(rows: &[Row], body: usize, pivots: &mut Vec<(usize, Row)>) -> Vec<
     kept.collect()
 }
 
-/// Gauss-Jordan elimination.
-fn reduce(basis: &mut [Vec<f64>], columns: usize) {
+/// Gauss-Jordan elimination. The rows are sparse: the cost grows with their entries.
+fn reduce(basis: &mut [Row], columns: usize) {
+    // The rows with an entry in each column, and the rows in their current order.
+    let mut users = vec![BTreeSet::new(); columns];
+    for (k, row) in basis.iter().enumerate() {
+        row.keys().for_each(|&column| {
+            users[column].insert(k);
+        });
+    }
+    let mut order: Vec<usize> = (0..basis.len()).collect();
+    let mut places = order.clone();
     let mut done = 0;
     for col in 0..columns {
-        let Some(pivot) = (done..basis.len())
-            .max_by(|&a, &b| basis[a][col].abs().total_cmp(&basis[b][col].abs()))
-        else {
-            return;
+        let left = users[col].iter().filter(|&&k| places[k] >= done);
+        let Some(&pivot) = left.max_by(|&&a, &&b| {
+            let sizes = [a, b].map(|k| basis[k][&col].abs());
+            sizes[0]
+                .total_cmp(&sizes[1])
+                .then(places[a].cmp(&places[b]))
+        }) else {
+            continue;
         };
-        if basis[pivot][col].abs() < 1e-6 {
+        if basis[pivot][&col].abs() < 1e-6 {
             continue;
         }
-        basis.swap(done, pivot);
-        let row: Vec<f64> = basis[done].iter().map(|x| x / basis[done][col]).collect();
-        for (k, other) in basis.iter_mut().enumerate() {
-            let factor = if k == done { 0.0 } else { other[col] };
-            other
-                .iter_mut()
-                .zip(&row)
-                .for_each(|(x, r)| *x -= factor * r);
+        let (here, first) = (places[pivot], order[done]);
+        order.swap(done, here);
+        (places[pivot], places[first]) = (done, here);
+        let scale = basis[pivot][&col];
+        basis[pivot].values_mut().for_each(|x| *x /= scale);
+        let row = basis[pivot].clone();
+        for k in users[col].clone() {
+            if k == pivot {
+                continue;
+            }
+            let factor = basis[k][&col];
+            for (&column, r) in &row {
+                *basis[k].entry(column).or_default() -= factor * r;
+                users[column].insert(k);
+            }
         }
-        basis[done] = row;
         done += 1;
     }
+    let rows = order.iter().map(|&k| std::mem::take(&mut basis[k]));
+    let rows: Vec<Row> = rows.collect();
+    basis.clone_from_slice(&rows);
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use nalgebra::DVector;
 
     /// Random chains of bodies with some conditions: as many motions are free as the singular values say, and all conditions hold.
     #[test]
@@ -379,8 +419,10 @@ mod tests {
                 values.iter().filter(|value| **value < ZERO).count()
             );
             for v in basis {
-                let size = max_abs(&v);
-                let missed = (&dense * nalgebra::DVector::from_vec(v)).amax();
+                let size = max_abs(v.values());
+                let mut whole = DVector::zeros(3 * bodies);
+                v.iter().for_each(|(&column, x)| whole[column] = *x);
+                let missed = (&dense * whole).amax();
                 assert!(missed < 1e-10 * size, "{missed} of {size}");
             }
         }

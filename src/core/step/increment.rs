@@ -139,6 +139,7 @@ impl Iterate {
         if let Some(by) = helped.filter(|by| matches!(by, Fallback::Deeper | Fallback::Release)) {
             self.state.record.searched.adopted = Some(by);
         }
+        self.state.record.searched.geometry |= helped == Some(Fallback::Geometry);
         self.state.record.searched.origin = None;
         let rest = self.state.sub_increment.next();
         self.state.sub_increment = rest.unwrap_or_else(|| {

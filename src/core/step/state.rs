@@ -142,6 +142,9 @@ pub struct SearchRecord {
     /// Whether a major iteration without the change of the contact geometry in its tangent has helped.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub frozen: bool,
+    /// Whether the change of the contact geometry is in the tangent although the scene freezes it: that has helped.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub geometry: bool,
     /// The fallback of the search that helped last; the next failed increment tries it first.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub adopted: Option<Fallback>,
@@ -320,6 +323,9 @@ impl State {
         if let Some(route) = self.recovery.fallback {
             settings = route.by.in_force(settings);
         }
+        if self.record.searched.geometry {
+            settings = Fallback::Geometry.in_force(settings);
+        }
         if self.recovery.brake.is_some() && !self.attempt.net {
             settings.slip = SlipCount::Major;
         }
@@ -395,6 +401,7 @@ impl State {
                 other.major.correction,
             ]
             && self.attempt.search.frozen == other.attempt.search.frozen
+            && self.settings().geometry == other.settings().geometry
             && (self.recovery.brake, &self.way, &self.recovery.motion)
                 == (other.recovery.brake, &other.way, &other.recovery.motion)
             && self.nodes.len() == other.nodes.len()

@@ -6,6 +6,7 @@
 //! starts: a step of those costs a solve, and they need at least as many steps as there are nodes. Sweeps alone solve 248 of the
 //! 276 problems of `cargo bench --bench hyperstatic`, and pivoting solves the rest.
 
+use crate::interface::census;
 use crate::{Method, Strategy};
 
 /// Tries the rungs in order.
@@ -39,6 +40,13 @@ const MANY: usize = 20;
 const MOST_PIVOTED: usize = 64;
 /// Maximum number of contacts for `copositive`, which needs 300 bytes per pair of contacts.
 const MOST_COPOSITIVE: usize = 1000;
+
+/// Whether the strategies after the first find nothing if a body is unsupported in the modes at the start of the history: with this
+/// number of contacts, of which `near` are over a surface. They start from these modes or with all contacts open, and the equations
+/// of both starts are singular; only `lemke` has other starts, and the census tries other modes.
+pub fn needs_support(contacts: usize, near: usize) -> bool {
+    contacts > MOST_PIVOTED.max(MANY) && near > census::MOST
+}
 
 impl Method for Ladder {
     fn rungs(&self) -> &'static [Strategy] {

@@ -11,6 +11,7 @@ mod sliding;
 mod table2;
 
 pub use gauss_seidel::SETTLED;
+pub use ladder::needs_support;
 
 use crate::interface::pivoting::CoulombForm;
 use crate::{BoundUpdate, Method, Settings, Strategy};

@@ -15,6 +15,7 @@ impl Recovery for Fallback {
             Fallback::Consistent => "consistent",
             Fallback::Start => "start",
             Fallback::Held => "held",
+            Fallback::Geometry => "geometry",
             Fallback::Deeper => "deeper",
             Fallback::Release => "motion",
             Fallback::Back => "back",
@@ -98,6 +99,7 @@ impl Fallback {
                 let least = stalled.model.least;
                 !stalled.is_given() && least.is_none_or(|least| rest.section().size() >= least)
             }
+            Fallback::Geometry if state.record.searched.geometry => false,
             _ => !stalled.is_given() && self.changes(&state.controls.settings),
         }
     }

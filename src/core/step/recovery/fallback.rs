@@ -11,8 +11,10 @@
 //!
 //! If `settings.search` allows it, the search continues:
 //!
-//! 5. with parts down to 1/4096 of the least increment;
-//! 6. with the loads of the last equilibrium, from which a damped motion leads to the next one (`damped`), which is
+//! 5. with the change of the contact geometry in the tangent ([`Geometry::Consistent`]), if the scene freezes it: without it, the
+//!    major iterations may diverge or cycle however small the increment. It stays in force in the following increments;
+//! 6. with parts down to 1/4096 of the least increment;
+//! 7. with the loads of the last equilibrium, from which a damped motion leads to the next one (`damped`), which is
 //!    marked.
 //!
 //! Before all others, if a body is unsupported at the start of the history, nodes that touch without a gap start fixed.
@@ -20,7 +22,7 @@
 //! Each fallback is cut into halves as before and stays in force until a part of the increment is accepted. If none helps, the
 //! last half is repeated without a fallback, so that the failed state matches the reported failure.
 
-use crate::model::Touch;
+use crate::model::{Geometry, Touch};
 use crate::{BoundUpdate, Settings, SubIncrement};
 use serde::{Deserialize, Serialize};
 
@@ -42,6 +44,8 @@ crate::words! {
         Start "touch: start",
         /// Sliding is held back ([`super::proximal`]).
         Held "held-back sliding",
+        /// The change of the contact geometry in the tangent, from here on.
+        Geometry "geometry: consistent",
         /// Parts smaller than the least increment.
         Deeper "parts below the least increment",
         /// A damped motion from the last equilibrium.
@@ -65,7 +69,7 @@ impl Fallback {
     pub(in crate::step) fn searches(self) -> bool {
         matches!(
             self,
-            Fallback::Touching | Fallback::Deeper | Fallback::Release
+            Fallback::Touching | Fallback::Geometry | Fallback::Deeper | Fallback::Release
         )
     }
 
@@ -80,6 +84,7 @@ impl Fallback {
             | Fallback::Back => {}
             Fallback::Consistent => settings.t_max = BoundUpdate::Consistent,
             Fallback::Start => settings.touch = Touch::Start,
+            Fallback::Geometry => settings.geometry = Geometry::Consistent,
         }
         settings
     }

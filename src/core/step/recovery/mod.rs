@@ -17,7 +17,7 @@
 //! ```
 //!
 //! The increment fails if a node causes the failure of more than 300 of its parts: the state of that node does not depend on the
-//! size.
+//! size. Of the search, only the contact geometry in the tangent is tried then.
 
 mod cut;
 mod damped;
@@ -56,12 +56,13 @@ const ALONG: [&dyn Recovery; 3] = [
     &path_corner::LastCornerRestart,
 ];
 const LOADED: [&dyn Recovery; 3] = [&cut::IncrementCut, &whole::WholeIncrement, &damped::Release];
-const FALLBACKS: [&dyn Recovery; 8] = [
+const FALLBACKS: [&dyn Recovery; 9] = [
     &Fallback::Touching,
     &Fallback::Section,
     &Fallback::Consistent,
     &Fallback::Start,
     &Fallback::Held,
+    &Fallback::Geometry,
     &Fallback::Deeper,
     &Fallback::Release,
     &Fallback::Back,
@@ -86,7 +87,8 @@ impl Stepper {
             *scales = self.now.stalled().scales();
         }
         if let Some(stop) = self.now.state.cut_too_often(&why) {
-            return Outcome::Failed(stop);
+            let again = self.recover(&[&Fallback::Geometry], &why);
+            return again.unwrap_or(Outcome::Failed(stop));
         }
         let again = self.cut(&why).or_else(|| self.fall_back(&why));
         again.unwrap_or(Outcome::Failed(why))
@@ -169,6 +171,9 @@ impl Iterate {
         }
         if by == Some(Fallback::Touching) {
             self.hold_near();
+        }
+        if by == Some(Fallback::Geometry) {
+            self.state.recovery.cuts.clear();
         }
         if by == Some(Fallback::Release) {
             self.state.record.searched.released = Some(self.state.start.load_factor);
