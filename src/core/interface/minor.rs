@@ -38,8 +38,7 @@ pub fn check(
     let ties = &check.ties;
     let (record, turned) = record(&before, kinematics, given, friction, check);
     let [normal, tangential] = given.motion;
-    // A motion below the tolerance, as at the start of a major iteration near equilibrium, has no direction.
-    node.travel = if normal.abs() > ties.length {
+    node.travel = if normal.abs() > f64::MIN_POSITIVE {
         tangential / normal
     } else {
         0.0
@@ -52,7 +51,13 @@ pub fn check(
     if let Forced::Once(_) = node.forced {
         node.forced = Forced::No;
     }
-    leave_or_enter(node, &before, check.settings.touch);
+    // A motion below the tolerance, as at the start of a major iteration near equilibrium, has no direction.
+    let ratio = if normal.abs() > ties.length {
+        node.travel
+    } else {
+        0.0
+    };
+    leave_or_enter(node, &before, check.settings.touch, ratio);
     let lag = before.mode == Mode::Sliding
         && (record.t_max_used - node.t_max).abs() > ties.force.max(f64::MIN_POSITIVE);
     let settled = !record.decision.changes() && !lag;
@@ -209,11 +214,11 @@ fn sense(
 
 /// Sets the ratio ρ (eqn 14) when a node touches and resets it when the node opens. A node that has kept its anchor has no ρ,
 /// because it returns to its anchor.
-fn leave_or_enter(node: &mut ContactState, before: &ContactState, touch: Touch) {
+fn leave_or_enter(node: &mut ContactState, before: &ContactState, touch: Touch, ratio: f64) {
     match (before.mode, node.mode) {
         (_, Mode::Free) => node.ratio = 0.0,
         (Mode::Free, _) if touch != Touch::Start && !before.kept => {
-            node.ratio = node.travel;
+            node.ratio = ratio;
         }
         _ => {}
     }
