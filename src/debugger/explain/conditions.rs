@@ -2,6 +2,7 @@
 
 use super::outline::Point;
 use std::collections::{BTreeMap, BTreeSet};
+use stickslip_core::model::Factor;
 use stickslip_core::plane::{dot, minus};
 use stickslip_core::{BodyKind, Component, Model};
 
@@ -54,18 +55,18 @@ pub struct Conditions {
 /// The marks at a load factor, with nodes at `place`. A load that is still 0 is shown as at the end of the path.
 pub fn conditions(model: &Model, load_factor: f64, place: &dyn Fn(usize) -> Point) -> Conditions {
     let end = model.path.last().copied().unwrap_or(1.0);
-    let amplitude = |value: f64, at: &dyn Fn(f64) -> f64| match value * at(load_factor) {
-        0.0 => value * at(end),
+    let amplitude = |value: f64, scale: &Factor| match value * scale.at(load_factor) {
+        0.0 => value * scale.at(end),
         now => now,
     };
-    let loads = model.loads.iter().map(|load| {
-        let value = amplitude(load.value, &|factor| load.scale.at(factor));
-        (Given::Load, load.dof, value)
-    });
-    let motions = model.prescribed.iter().map(|one| {
-        let value = amplitude(one.value, &|factor| one.scale.at(factor));
-        (Given::Motion, one.dof, value)
-    });
+    let loads = model
+        .loads
+        .iter()
+        .map(|load| (Given::Load, load.dof, amplitude(load.value, &load.scale)));
+    let motions = model
+        .prescribed
+        .iter()
+        .map(|one| (Given::Motion, one.dof, amplitude(one.value, &one.scale)));
     let mut found = Conditions::default();
     let mut vectors: BTreeMap<(usize, Given), Point> = BTreeMap::new();
     for (given, dof, value) in loads.chain(motions).filter(|(.., value)| *value != 0.0) {
@@ -84,23 +85,19 @@ pub fn conditions(model: &Model, load_factor: f64, place: &dyn Fn(usize) -> Poin
     found.arrows = scaled(arrows.collect());
     found
         .arrows
-        .extend(scaled(pressures(model, load_factor, end, place)));
+        .extend(scaled(pressures(model, &amplitude, place)));
     found
 }
 
 /// Following pressures, one arrow per face.
 fn pressures(
     model: &Model,
-    load_factor: f64,
-    end: f64,
+    amplitude: &dyn Fn(f64, &Factor) -> f64,
     place: &dyn Fn(usize) -> Point,
 ) -> Vec<ConditionArrow> {
     let mut found = Vec::new();
     for pressure in &model.pressures {
-        let value = match pressure.value * pressure.scale.at(load_factor) {
-            0.0 => pressure.value * pressure.scale.at(end),
-            now => now,
-        };
+        let value = amplitude(pressure.value, &pressure.scale);
         for face in &pressure.faces {
             let (Some(&first), Some(&last)) = (face.nodes.first(), face.nodes.last()) else {
                 continue;

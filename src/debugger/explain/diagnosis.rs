@@ -11,7 +11,7 @@ use stickslip_core::model::SlipCount;
 use stickslip_core::strategy::method;
 use stickslip_core::{
     AssumedMode, BoundUpdate, ContactRecord, ContactState, Cycle, InterfaceProblem, Mode, Model,
-    NodeAnswer, Rule, TestedQuantity, Trials, words,
+    NodeAnswer, TestedQuantity, Trials, words,
 };
 use stickslip_scene::{aligned, first_of, joined, sig4};
 
@@ -233,7 +233,7 @@ fn push(
     records: &[ContactRecord],
     node: usize,
 ) -> Option<Push> {
-    let tested = fired(records[node].decision.rule)?;
+    let tested = tested::deciding(&records[node].decision);
     let of = |i: &Influence| tested::effect(tested, i).1;
     let most = all
         .iter()
@@ -244,23 +244,6 @@ fn push(
         influence: *most,
         tested,
     })
-}
-
-/// The inequality that changed a node's mode.
-fn fired(rule: Rule) -> Option<TestedQuantity> {
-    match rule {
-        Rule::FixedOpens | Rule::SlidingOpens | Rule::CornerOpens => {
-            Some(TestedQuantity::NormalForce)
-        }
-        Rule::FixedSlides | Rule::CornerSlides => Some(TestedQuantity::ShearForce),
-        Rule::CornerReleases => Some(TestedQuantity::LeastFriction),
-        Rule::FixedDragged => Some(TestedQuantity::Slip),
-        Rule::SlidingSticks => Some(TestedQuantity::Slip),
-        Rule::FreeSticks | Rule::FreeSlides | Rule::FreeEnters => Some(TestedQuantity::Gap),
-        Rule::NewtonOpens => Some(TestedQuantity::NormalForce),
-        Rule::NewtonSticks | Rule::NewtonSlides => Some(TestedQuantity::ShearForce),
-        _ => None,
-    }
 }
 
 fn cause(
