@@ -139,7 +139,7 @@ fn modes_that_cycle_at_the_least_increment_settle_in_smaller_parts() {
 }
 
 /// Without the change of the contact geometry in the tangent, the major iterations do not converge however small the increment: the
-/// search takes it in, keeps it, and finds the state of `geometry: consistent`.
+/// search uses it from then on and finds the state of `geometry: consistent`.
 #[test]
 fn increments_that_diverge_with_frozen_geometry_are_found_with_the_consistent_one() {
     let name = "frozen-geometry-diverges";

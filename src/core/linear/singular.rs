@@ -6,7 +6,7 @@
 use crate::contact::projection::{Projection, tangent};
 use crate::model::BodyKind;
 use crate::model::Component;
-use crate::plane::{max_abs, minus};
+use crate::plane::minus;
 use crate::{ContactState, Mode, Model};
 use nalgebra::{DMatrix, RowVector3};
 use serde::{Deserialize, Serialize};
@@ -92,6 +92,9 @@ pub fn diagnose<'a>(
 
 /// A condition: the coefficients of its columns, which are x, y and rotation (times the scene's length) of each body.
 type Row = BTreeMap<usize, f64>;
+
+/// Values by column, in ascending order of the columns.
+type SparseVector = Vec<(usize, f64)>;
 
 /// Rigid motions of all bodies.
 struct Frame<'a> {
@@ -213,14 +216,13 @@ impl<'a> Frame<'a> {
     }
 
     /// Describes the motion of each body in a null vector.
-    fn name(&self, v: &Row) -> Vec<RigidMotion> {
-        let size = max_abs(v.values());
-        let at = |column: usize| v.get(&column).copied().unwrap_or(0.0);
-        let mut bodies: Vec<usize> = v.keys().map(|column| column / 3).collect();
+    fn name(&self, v: &SparseVector) -> Vec<RigidMotion> {
+        let size = largest(v);
+        let mut bodies: Vec<usize> = v.iter().map(|(column, _)| column / 3).collect();
         bodies.dedup();
         bodies
             .into_iter()
-            .map(|b| (b, [0, 1, 2].map(|k| at(3 * b + k))))
+            .map(|b| (b, [0, 1, 2].map(|k| entry(v, 3 * b + k))))
             .filter(|(_, moved)| moved.iter().any(|x| x.abs() > ZERO * size))
             .map(|(b, [x, y, turn])| {
                 let turn = turn / self.model.length;
@@ -244,7 +246,7 @@ impl<'a> Frame<'a> {
 ///
 /// The bodies are eliminated one after the other, by a QR decomposition of the conditions that contain them, so that the cost grows
 /// with the number of bodies where each touches few others.
-fn null_space(conditions: Vec<Row>, bodies: usize) -> Vec<Row> {
+fn null_space(conditions: Vec<Row>, bodies: usize) -> Vec<SparseVector> {
     let mut waiting = vec![Vec::new(); bodies];
     let wait = |waiting: &mut Vec<Vec<Row>>, row: Row| {
         if let Some(first) = row.keys().next() {
@@ -264,32 +266,37 @@ fn null_space(conditions: Vec<Row>, bodies: usize) -> Vec<Row> {
     let columns = 3 * bodies;
     let mut is_free = vec![true; columns];
     pivots.iter().for_each(|(pivot, _)| is_free[*pivot] = false);
-    // The pivots whose values contain each column, and for each pivot its place in the elimination.
+    // The pivots whose values contain each column, by their places in the elimination; all come before the column's own.
     let mut parts = vec![Vec::new(); columns];
     for (place, (_, row)) in pivots.iter().enumerate() {
         row.keys().for_each(|&column| parts[column].push(place));
     }
-    let free = (0..columns).filter(|column| is_free[*column]);
-    let mut basis: Vec<Row> = free
-        .map(|column| {
-            let mut v = Row::from([(column, 1.0)]);
-            let mut next: BTreeSet<usize> = parts[column].iter().copied().collect();
-            while let Some(place) = next.pop_last() {
-                let (pivot, row) = &pivots[place];
-                let sum: f64 = row
-                    .iter()
-                    .filter_map(|(column, a)| Some(a * v.get(column)?))
-                    .sum();
-                if sum != 0.0 {
-                    v.insert(*pivot, -sum);
-                    next.extend(&parts[*pivot]);
-                }
+    let (mut values, mut waits) = (vec![0.0; columns], vec![false; pivots.len()]);
+    let mut basis = Vec::new();
+    for column in (0..columns).filter(|column| is_free[*column]) {
+        let mut moved = vec![column];
+        values[column] = 1.0;
+        parts[column].iter().for_each(|&place| waits[place] = true);
+        for (place, (pivot, row)) in pivots.iter().enumerate().rev() {
+            if !std::mem::take(&mut waits[place]) {
+                continue;
             }
-            let size = v.values().map(|x| x * x).sum::<f64>().sqrt();
-            v.values_mut().for_each(|x| *x /= size);
-            v
-        })
-        .collect();
+            values[*pivot] = -row.iter().map(|(&c, a)| a * values[c]).sum::<f64>();
+            if values[*pivot] != 0.0 {
+                moved.push(*pivot);
+                parts[*pivot].iter().for_each(|&place| waits[place] = true);
+            }
+        }
+        moved.sort_unstable();
+        let size = moved
+            .iter()
+            .map(|&c| values[c] * values[c])
+            .sum::<f64>()
+            .sqrt();
+        let v: SparseVector = moved.iter().map(|&c| (c, values[c] / size)).collect();
+        moved.iter().for_each(|&c| values[c] = 0.0);
+        basis.push(v);
+    }
     reduce(&mut basis, columns);
     basis
 }
@@ -333,52 +340,61 @@ fn eliminated(rows: &[Row], body: usize, pivots: &mut Vec<(usize, Row)>) -> Vec<
     kept.collect()
 }
 
-/// Gauss-Jordan elimination. The rows are sparse: the cost grows with their entries.
-fn reduce(basis: &mut [Row], columns: usize) {
-    // The rows with an entry in each column, and the rows in their current order.
-    let mut users = vec![BTreeSet::new(); columns];
-    for (k, row) in basis.iter().enumerate() {
-        row.keys().for_each(|&column| {
-            users[column].insert(k);
-        });
-    }
-    let mut order: Vec<usize> = (0..basis.len()).collect();
-    let mut places = order.clone();
+/// Gauss-Jordan elimination.
+fn reduce(basis: &mut [SparseVector], columns: usize) {
     let mut done = 0;
-    for col in 0..columns {
-        let left = users[col].iter().filter(|&&k| places[k] >= done);
-        let Some(&pivot) = left.max_by(|&&a, &&b| {
-            let sizes = [a, b].map(|k| basis[k][&col].abs());
-            sizes[0]
-                .total_cmp(&sizes[1])
-                .then(places[a].cmp(&places[b]))
-        }) else {
-            continue;
+    for column in 0..columns {
+        let size = |v: &SparseVector| entry(v, column).abs();
+        let Some(pivot) =
+            (done..basis.len()).max_by(|&a, &b| size(&basis[a]).total_cmp(&size(&basis[b])))
+        else {
+            return;
         };
-        if basis[pivot][&col].abs() < 1e-6 {
+        if size(&basis[pivot]) < 1e-6 {
             continue;
         }
-        let (here, first) = (places[pivot], order[done]);
-        order.swap(done, here);
-        (places[pivot], places[first]) = (done, here);
-        let scale = basis[pivot][&col];
-        basis[pivot].values_mut().for_each(|x| *x /= scale);
-        let row = basis[pivot].clone();
-        for k in users[col].clone() {
-            if k == pivot {
-                continue;
-            }
-            let factor = basis[k][&col];
-            for (&column, r) in &row {
-                *basis[k].entry(column).or_default() -= factor * r;
-                users[column].insert(k);
+        basis.swap(done, pivot);
+        let scale = entry(&basis[done], column);
+        basis[done].iter_mut().for_each(|(_, x)| *x /= scale);
+        let row = basis[done].clone();
+        for (k, other) in basis.iter_mut().enumerate() {
+            let factor = entry(other, column);
+            if k != done && factor != 0.0 {
+                *other = subtracted(other, factor, &row);
             }
         }
         done += 1;
     }
-    let rows = order.iter().map(|&k| std::mem::take(&mut basis[k]));
-    let rows: Vec<Row> = rows.collect();
-    basis.clone_from_slice(&rows);
+}
+
+/// Value of a vector in a column.
+fn entry(v: &SparseVector, column: usize) -> f64 {
+    v.binary_search_by_key(&column, |(c, _)| *c)
+        .map_or(0.0, |at| v[at].1)
+}
+
+/// Largest value by magnitude.
+fn largest(v: &SparseVector) -> f64 {
+    v.iter().fold(0.0, |most, (_, x)| most.max(x.abs()))
+}
+
+/// a − factor b.
+fn subtracted(a: &SparseVector, factor: f64, b: &SparseVector) -> SparseVector {
+    let mut all = SparseVector::with_capacity(a.len() + b.len());
+    let (mut a, mut b) = (a.iter().peekable(), b.iter().peekable());
+    loop {
+        let column = match (a.peek(), b.peek()) {
+            (Some(x), Some(y)) => x.0.min(y.0),
+            (Some(one), None) | (None, Some(one)) => one.0,
+            (None, None) => return all,
+        };
+        let of_a = a.next_if(|x| x.0 == column).map_or(0.0, |x| x.1);
+        let of_b = b.next_if(|y| y.0 == column).map_or(0.0, |y| y.1);
+        let value = of_a - factor * of_b;
+        if value != 0.0 {
+            all.push((column, value));
+        }
+    }
 }
 
 #[cfg(test)]
@@ -419,9 +435,9 @@ mod tests {
                 values.iter().filter(|value| **value < ZERO).count()
             );
             for v in basis {
-                let size = max_abs(v.values());
+                let size = largest(&v);
                 let mut whole = DVector::zeros(3 * bodies);
-                v.iter().for_each(|(&column, x)| whole[column] = *x);
+                v.iter().for_each(|&(column, x)| whole[column] = x);
                 let missed = (&dense * whole).amax();
                 assert!(missed < 1e-10 * size, "{missed} of {size}");
             }

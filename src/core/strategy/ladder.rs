@@ -41,9 +41,9 @@ const MOST_PIVOTED: usize = 64;
 /// Maximum number of contacts for `copositive`, which needs 300 bytes per pair of contacts.
 const MOST_COPOSITIVE: usize = 1000;
 
-/// Whether the strategies after the first find nothing if a body is unsupported in the modes at the start of the history: with this
-/// number of contacts, of which `near` are over a surface. They start from these modes or with all contacts open, and the equations
-/// of both starts are singular; only `lemke` has other starts, and the census tries other modes.
+/// Whether only supported modes at the start of the history help, if a body is unsupported in them; `near` of the contacts are over
+/// a surface. The strategies for this many contacts start from these modes or with all contacts open, and the equations of both are
+/// singular. Only `lemke` has other starts, and the census tries other modes.
 pub fn needs_support(contacts: usize, near: usize) -> bool {
     contacts > MOST_PIVOTED.max(MANY) && near > census::MOST
 }

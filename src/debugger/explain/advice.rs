@@ -111,7 +111,7 @@ fn kinds(state: &State, failure: &Failure) -> Vec<RemedyKind> {
         }
     };
     let lags = settings.t_max == BoundUpdate::Lagged;
-    let frozen = settings.geometry == Geometry::Frozen;
+    let frozen = state.settings().geometry == Geometry::Frozen;
     let searches = climbs && settings.search == SearchMode::Off;
     match failure {
         Failure::Cycle(_) => {

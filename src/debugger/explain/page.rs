@@ -344,7 +344,7 @@ impl PageBuilder {
             }
             Failure::MajorLimit { .. } => {
                 self.repeat(stepper, state, failure, stop, |model, attempt| {
-                    majors::limit_words(model, &state.controls.settings, attempt)
+                    majors::limit_words(model, &state.settings(), attempt)
                 });
             }
             Failure::Diverged { .. } => {

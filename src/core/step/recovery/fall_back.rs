@@ -1,11 +1,13 @@
 //! Decides when a fallback is used, and for which part of the increment.
 
+use super::FALLBACKS;
 use super::fallback::{DEEPER, Fallback, FallbackState};
 use super::retry::{Effect, Recovery, Retry};
 use super::stalled::FailedIncrement;
 use crate::model::Jumps;
 use crate::strategy;
 use crate::{Failure, Outcome, Settings, State, SubIncrement};
+use std::cmp::Ordering;
 
 impl Recovery for Fallback {
     fn name(&self) -> &'static str {
@@ -70,7 +72,27 @@ fn last_half(state: &State) -> SubIncrement {
         .map_or(state.sub_increment, |route| route.from)
 }
 
+/// In the order in which they are tried.
+impl Ord for Fallback {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.turn().cmp(&other.turn())
+    }
+}
+
+impl PartialOrd for Fallback {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
 impl Fallback {
+    /// Place in the order in which fallbacks are tried.
+    fn turn(self) -> Option<usize> {
+        FALLBACKS
+            .iter()
+            .position(|listed| listed.name() == self.name())
+    }
+
     /// Whether the fallback may help after this failure. If all bodies are given as matrices, the interface problem itself fails,
     /// and the ladder has already tried every strategy; at most, sliding can be held back.
     fn helps(self, why: &Failure, stalled: &FailedIncrement<'_>) -> bool {

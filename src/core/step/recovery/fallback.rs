@@ -17,7 +17,7 @@
 //! 7. with the loads of the last equilibrium, from which a damped motion leads to the next one (`damped`), which is
 //!    marked.
 //!
-//! Before all others, if a body is unsupported at the start of the history, nodes that touch without a gap start fixed.
+//! Before all others, if a body is unsupported at the start of the history, near contacts start closed.
 //!
 //! Each fallback is cut into halves as before and stays in force until a part of the increment is accepted. If none helps, the
 //! last half is repeated without a fallback, so that the failed state matches the reported failure.
@@ -30,8 +30,9 @@ use serde::{Deserialize, Serialize};
 pub(super) const DEEPER: f64 = 4096.0;
 
 crate::words! {
-    /// A fallback.
-    #[derive(PartialOrd, Ord, Serialize, Deserialize)]
+    /// A fallback. They are tried in the order of the list in [`super`]; digests of states contain their places here, so a new one
+    /// comes last.
+    #[derive(Serialize, Deserialize)]
     #[serde(rename_all = "kebab-case")]
     pub enum Fallback, words {
         /// Contacts with a small gap at the start of the history are closed.
@@ -44,14 +45,14 @@ crate::words! {
         Start "touch: start",
         /// Sliding is held back ([`super::proximal`]).
         Held "held-back sliding",
-        /// The change of the contact geometry in the tangent, from here on.
-        Geometry "geometry: consistent",
         /// Parts smaller than the least increment.
         Deeper "parts below the least increment",
         /// A damped motion from the last equilibrium.
         Release "a damped motion from the last equilibrium",
         /// The last half without a fallback: nothing else helped.
         Back "the last part without a fallback, since none has helped",
+        /// The change of the contact geometry in the tangent, in this increment and all that follow.
+        Geometry "geometry: consistent",
     }
 }
 

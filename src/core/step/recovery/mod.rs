@@ -17,7 +17,7 @@
 //! ```
 //!
 //! The increment fails if a node causes the failure of more than 300 of its parts: the state of that node does not depend on the
-//! size. Of the search, only the contact geometry in the tangent is tried then.
+//! size. Of the search, only the contact geometry in the tangent is tried then, with as many cuts again.
 
 mod cut;
 mod damped;
@@ -87,8 +87,9 @@ impl Stepper {
             *scales = self.now.stalled().scales();
         }
         if let Some(stop) = self.now.state.cut_too_often(&why) {
-            let again = self.recover(&[&Fallback::Geometry], &why);
-            return again.unwrap_or(Outcome::Failed(stop));
+            let helped = self.now.state.record.searched.adopted.is_some();
+            let again = (!helped).then(|| self.recover(&[&Fallback::Geometry], &why));
+            return again.flatten().unwrap_or(Outcome::Failed(stop));
         }
         let again = self.cut(&why).or_else(|| self.fall_back(&why));
         again.unwrap_or(Outcome::Failed(why))
@@ -172,9 +173,6 @@ impl Iterate {
         if by == Some(Fallback::Touching) {
             self.hold_near();
         }
-        if by == Some(Fallback::Geometry) {
-            self.state.recovery.cuts.clear();
-        }
         if by == Some(Fallback::Release) {
             self.state.record.searched.released = Some(self.state.start.load_factor);
             self.state.record.searched.origin = Some(self.state.start.clone());
@@ -201,11 +199,14 @@ impl Iterate {
 
 impl State {
     /// Failure of an increment that was cut [`MOST_CUTS`] times because of the same node: each part is accepted, and the next part
-    /// fails at the same node.
+    /// fails at the same node. With the contact geometry in the tangent by the search, it is twice that number.
     pub(super) fn cut_too_often(&self, why: &Failure) -> Option<Failure> {
         let slave = why.culprit()?;
         let cuts = *self.recovery.cuts.get(&slave)?;
-        (cuts >= MOST_CUTS).then(|| Failure::CutTooOften {
+        let fallback = self.recovery.fallback.map(|route| route.by);
+        let geometry = self.record.searched.geometry || fallback == Some(Fallback::Geometry);
+        let most = if geometry { 2 * MOST_CUTS } else { MOST_CUTS };
+        (cuts >= most).then(|| Failure::CutTooOften {
             slave,
             cuts,
             last: Box::new(why.clone()),
