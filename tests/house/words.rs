@@ -1,5 +1,5 @@
-//! Plain language: few of the phrases that the style avoids in comments, strings and the manual, and type names that are unique
-//! within a package.
+//! Plain language: few of the phrases that the style avoids in comments, strings and the manual, type names that are unique within
+//! a package, and types with few methods.
 
 use super::{imports::rust_files, top};
 use std::collections::BTreeMap;
@@ -13,6 +13,8 @@ const AVOIDED: &str = "tell|tells|told|of its own|of their own|anew|goes on|go o
     looked at|as far as|in vain|twice over|beaten";
 /// Largest number of them per 1,000 words.
 const MOST_PER_THOUSAND: f64 = 0.5;
+/// Maximum number of methods of a type.
+const MOST_METHODS: usize = 60;
 /// Largest number of type names that a package, or several, define more than once.
 const MOST_DUPLICATES: usize = 2;
 
@@ -87,16 +89,28 @@ fn comments_and_strings_are_in_plain_english() {
     assert!(stilted.is_empty(), "{stilted:?}");
 }
 
+/// The files of all packages: package, file, and its code without inline tests.
+fn code() -> Vec<(String, String, String)> {
+    let src = top().join("src");
+    let read = |file: String| {
+        let package = file.split('/').next().unwrap().to_owned();
+        let source = fs::read_to_string(src.join(&file)).unwrap();
+        let code = source.split("#[cfg(test)]\nmod ").next().unwrap();
+        (package, file, code.to_owned())
+    };
+    rust_files(&src, &[]).into_iter().map(read).collect()
+}
+
+/// The identifier at the start of a text.
+fn identifier(text: &str) -> &str {
+    let end = |c: char| !c.is_alphanumeric() && c != '_';
+    text.split(end).next().unwrap_or_default()
+}
+
 #[test]
 fn type_names_are_unique_within_their_package() {
     let mut found: BTreeMap<(String, String), Vec<String>> = BTreeMap::new();
-    let src = top().join("src");
-    for file in rust_files(&src, &[]) {
-        let package = file.split('/').next().unwrap().to_owned();
-        let source = fs::read_to_string(src.join(&file)).unwrap();
-        let (code, _) = source
-            .split_once("#[cfg(test)]\nmod ")
-            .unwrap_or((&source, ""));
+    for (package, file, code) in code() {
         for line in code.lines().map(str::trim) {
             let line = line
                 .trim_start_matches("pub ")
@@ -104,8 +118,7 @@ fn type_names_are_unique_within_their_package() {
             let line = line.trim_start_matches("pub(super) ");
             let kinds = ["struct ", "enum ", "trait "];
             let name = kinds.iter().find_map(|kind| line.strip_prefix(kind));
-            let end = |c: char| !c.is_alphanumeric() && c != '_';
-            if let Some(name) = name.and_then(|rest| rest.split(end).next()) {
+            if let Some(name) = name.map(identifier) {
                 let key = (package.clone(), name.to_owned());
                 found.entry(key).or_default().push(file.clone());
             }
@@ -116,4 +129,36 @@ fn type_names_are_unique_within_their_package() {
         files.len() > 1 && name != "Args" && package != "platform"
     });
     assert!(found.len() < MOST_DUPLICATES, "{found:#?}");
+}
+
+#[test]
+fn no_type_has_more_methods_than_a_reader_can_hold() {
+    let mut methods: BTreeMap<(String, String), usize> = BTreeMap::new();
+    for (package, _, code) in code() {
+        let mut of = None;
+        for line in code.lines() {
+            if line.starts_with("impl") {
+                let head = line.trim_end_matches(" {");
+                let head = head.rsplit(" for ").next().unwrap();
+                let head = head.strip_prefix("impl").unwrap_or(head);
+                let head = match head.strip_prefix('<') {
+                    Some(generics) => generics.split_once("> ").map_or("", |(_, rest)| rest),
+                    None => head.trim_start(),
+                };
+                of = Some(identifier(head).to_owned());
+            } else if line.starts_with('}') {
+                of = None;
+            }
+            let is_method = line.starts_with("    ")
+                && !line.starts_with("     ")
+                && !line.trim_start().starts_with("//")
+                && line.contains("fn ");
+            if let Some(name) = of.as_ref().filter(|_| is_method) {
+                *methods.entry((package.clone(), name.clone())).or_default() += 1;
+            }
+        }
+    }
+    assert!(methods[&("core".to_owned(), "Stepper".to_owned())] > 40);
+    methods.retain(|_, count| *count > MOST_METHODS);
+    assert!(methods.is_empty(), "{methods:?}");
 }

@@ -159,9 +159,9 @@ fn states_of_a_meshed_surface_are_counted_exactly_in_every_minor_iteration() {
         }
         let problem = stepper.interface_problem().unwrap();
         let found = search(&problem, BUDGET, &never).unwrap();
-        let answers = found.answers.len();
-        println!("{position:?}: {answers} after {}", found.visited);
-        assert!(found.exact && answers == 1 && found.visited < 5000);
+        let counted = (found.exact, found.answers.len(), found.visited);
+        let is_counted = matches!(counted, (true, 1, ..5000));
+        assert!(is_counted, "{position:?}: {counted:?}");
         searched += 1;
     }
 }

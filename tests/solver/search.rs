@@ -155,7 +155,7 @@ fn increments_that_diverge_with_frozen_geometry_are_found_with_the_consistent_on
     let consistent = run(name, &[("settings.geometry", "consistent")]);
     assert_eq!((consistent.failure, consistent.spent), (None, 0));
     for (found, wanted) in searched.u.iter().zip(&consistent.u) {
-        assert!((found - wanted).abs() < 1e-6, "{found} {wanted}");
+        assert!((found - wanted).abs() < 1e-9, "{found} {wanted}");
     }
 }
 

@@ -6,7 +6,7 @@
 use crate::contact::projection::{Projection, tangent};
 use crate::model::BodyKind;
 use crate::model::Component;
-use crate::plane::minus;
+use crate::plane::{max_abs, minus};
 use crate::{ContactState, Mode, Model};
 use nalgebra::{DMatrix, RowVector3};
 use serde::{Deserialize, Serialize};
@@ -217,7 +217,7 @@ impl<'a> Frame<'a> {
 
     /// Describes the motion of each body in a null vector.
     fn name(&self, v: &SparseVector) -> Vec<RigidMotion> {
-        let size = largest(v);
+        let size = max_abs(v.iter().map(|(_, x)| x));
         let mut bodies: Vec<usize> = v.iter().map(|(column, _)| column / 3).collect();
         bodies.dedup();
         bodies
@@ -373,11 +373,6 @@ fn entry(v: &SparseVector, column: usize) -> f64 {
         .map_or(0.0, |at| v[at].1)
 }
 
-/// Largest value by magnitude.
-fn largest(v: &SparseVector) -> f64 {
-    v.iter().fold(0.0, |most, (_, x)| most.max(x.abs()))
-}
-
 /// a − factor b.
 fn subtracted(a: &SparseVector, factor: f64, b: &SparseVector) -> SparseVector {
     let mut all = SparseVector::with_capacity(a.len() + b.len());
@@ -435,7 +430,7 @@ mod tests {
                 values.iter().filter(|value| **value < ZERO).count()
             );
             for v in basis {
-                let size = largest(&v);
+                let size = max_abs(v.iter().map(|(_, x)| x));
                 let mut whole = DVector::zeros(3 * bodies);
                 v.iter().for_each(|&(column, x)| whole[column] = x);
                 let missed = (&dense * whole).amax();

@@ -33,7 +33,7 @@ impl Stepper {
             self.now.state.forget_minors();
             return self.fail(why);
         }
-        let unsupported = self.now.starts_unsupported(&why);
+        let unsupported = self.now.stalled().starts_unsupported(&why);
         self.now.state.begin_again();
         let search = &mut self.now.state.attempt.search;
         let first = search.first.get_or_insert_with(|| Box::new(why.clone()));
@@ -211,21 +211,6 @@ impl Stepper {
 }
 
 impl Iterate {
-    /// Whether a body is unsupported in the first minor iteration of the history, and no strategy after the first can help
-    /// ([`strategy::needs_support`]).
-    fn starts_unsupported(&self, why: &Failure) -> bool {
-        let state = &self.state;
-        let contacts = state.nodes.len();
-        let over = |contact: &usize| {
-            !self.model.contacts[*contact].bond.is_tied()
-                && self.source.kinematics(*contact).is_some()
-        };
-        matches!(why, Failure::Singular(Singular::Rigid { .. }))
-            && state.start.verdict.is_none()
-            && (state.next.major, state.next.minor) == (1, 1)
-            && strategy::needs_support(contacts, (0..contacts).filter(over).count())
-    }
-
     /// Modes and T_max of the contacts that are not tied, at the start of the current major iteration.
     fn brought(&self) -> Vec<AssumedMode> {
         let first = self.state.major.minor_history.first(self.state.nodes.len());

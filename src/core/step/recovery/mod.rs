@@ -87,6 +87,7 @@ impl Stepper {
             *scales = self.now.stalled().scales();
         }
         if let Some(stop) = self.now.state.cut_too_often(&why) {
+            // Smaller parts or a motion that helped came after the geometry, which had not.
             let helped = self.now.state.record.searched.adopted.is_some();
             let again = (!helped).then(|| self.recover(&[&Fallback::Geometry], &why));
             return again.flatten().unwrap_or(Outcome::Failed(stop));

@@ -3,6 +3,7 @@
 use super::fallback::{DEEPER, Fallback};
 use crate::model::{BodyKind, Factor, Jumps, SearchMode};
 use crate::plane::max_abs;
+use crate::strategy;
 use crate::{Failure, Mode, Model, Singular, Source, State};
 
 /// Minimum size of a half, as a fraction of the whole increment.
@@ -72,6 +73,21 @@ impl FailedIncrement<'_> {
             _ => false,
         };
         loose && self.state.start.verdict.is_none() && self.near().next().is_some()
+    }
+
+    /// Whether a body is unsupported in the first minor iteration of the history, and no strategy after the first can help
+    /// ([`strategy::needs_support`]).
+    pub fn starts_unsupported(&self, why: &Failure) -> bool {
+        let state = self.state;
+        let contacts = state.nodes.len();
+        let over = |contact: &usize| {
+            !self.model.contacts[*contact].bond.is_tied()
+                && self.source.kinematics(*contact).is_some()
+        };
+        matches!(why, Failure::Singular(Singular::Rigid { .. }))
+            && state.start.verdict.is_none()
+            && (state.next.major, state.next.minor) == (1, 1)
+            && strategy::needs_support(contacts, (0..contacts).filter(over).count())
     }
 
     /// Free contacts whose gap is small.
