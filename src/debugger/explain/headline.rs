@@ -59,12 +59,43 @@ pub fn brief(model: &Model, failure: &Failure) -> String {
 
 /// The failure without lists of modes, cut at the end of a part if it would not fit into a line with its position.
 pub fn first_part(model: &Model, failure: &Failure) -> String {
-    const LONGEST: usize = 80;
     let mut text = brief(model, failure);
-    if let Some((end, _)) = text.char_indices().nth(LONGEST) {
-        let ends = ["; ", ": ", ", "].map(|between| text[..end].rfind(between));
-        let end = ends[0].max(ends[1]).or(ends[2]);
-        text.truncate(end.unwrap_or(text.len()));
-    }
+    text.truncate(end_of_part(&text));
     text
+}
+
+/// Where the longest part of a text ends that has at most 80 characters and no open parenthesis.
+fn end_of_part(text: &str) -> usize {
+    const LONGEST: usize = 80;
+    let Some((end, _)) = text.char_indices().nth(LONGEST) else {
+        return text.len();
+    };
+    let ends = ["; ", ": ", ", "].map(|between| text[..end].rfind(between));
+    let end = ends[0].max(ends[1]).or(ends[2]).unwrap_or(text.len());
+    match text[..end].rfind(" (") {
+        Some(open) if !text[open..end].contains(')') => open,
+        _ => end,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::end_of_part;
+
+    #[test]
+    fn a_cut_text_has_no_open_parenthesis() {
+        let long =
+            "contact modes repeat with period 4 from minor 17 (sheet.156, sheet.155 and 36 more)";
+        assert_eq!(
+            &long[..end_of_part(long)],
+            "contact modes repeat with period 4 from minor 17"
+        );
+        let closed = "refused: friction drives the slip of up.2 (slip -0.18, F_t -0.004); the last equilibrium is increment 1";
+        assert_eq!(
+            &closed[..end_of_part(closed)],
+            "refused: friction drives the slip of up.2 (slip -0.18, F_t -0.004)"
+        );
+        let short = "contact modes repeat with period 4 from minor 7 (a, b)";
+        assert_eq!(end_of_part(short), short.len());
+    }
 }
