@@ -249,8 +249,9 @@ fn bond(group: &SlaveSpec, area: f64) -> Bond {
     let compliance = |stiffness: f64| 1.0 / (stiffness * area);
     let normal = group.law.stiffness().map_or(0.0, compliance);
     // A hard node without an area has no friction if there is no cohesion per node.
-    let tangential = match (group.law, group.stick) {
-        (ContactLaw::Bonded { stiffness }, None) => compliance(stiffness),
+    let yields = group.law.is_tied() || !group.by.is_node();
+    let tangential = match (group.law.stiffness(), group.stick) {
+        (Some(stiffness), None) if yields => compliance(stiffness),
         (_, Some(stick)) if area > 0.0 => compliance(stick),
         _ => 0.0,
     };

@@ -523,7 +523,8 @@ described! {
         #[serde(default, skip_serializing_if = "ContactLaw::is_hard")]
         pub law: ContactLaw,
         /// Stick stiffness K_t, shear stress per length: a stuck node yields along the surface by F_t / (K_t A) with its
-        /// tributary area A (elastic slip). Default: none, sticking is rigid.
+        /// tributary area A (elastic slip). Default: none, sticking is rigid; for points of faces (`by: surface`), whose rigid
+        /// sticking would be more equations than a face has unknowns, the stiffness of the law.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub stick: Option<f64>,
         /// The points of the slave surface at which the law holds. Default: node.
