@@ -179,7 +179,7 @@ pub fn turned(model: &Model) -> Vec<TurnedSurface> {
             .zip(&model.contacts)
             .filter_map(|(stand, contact)| {
                 let (spot, _) = (*stand)?;
-                let own = outward[contact.node]?;
+                let own = outward_of(contact, &outward)?;
                 (spot.surface == surface).then(|| {
                     let element =
                         SurfaceElement::from_surface(&model.surfaces[surface], spot.element);
@@ -229,6 +229,16 @@ fn outward(model: &Model) -> Vec<Option<[f64; 2]>> {
     all
 }
 
+/// Mean outward direction of a contact: of its node, or of the nodes of its side.
+fn outward_of(contact: &Contact, at_nodes: &[Option<[f64; 2]>]) -> Option<[f64; 2]> {
+    contact
+        .carriers()
+        .try_fold([0.0; 2], |sum, (node, weight)| {
+            let own = at_nodes[node]?;
+            Some([sum[0] + weight * own[0], sum[1] + weight * own[1]])
+        })
+}
+
 /// Bodies without a support, prescribed displacement or contact.
 fn unheld(model: &Model) -> Vec<String> {
     let held = |node: usize| {
@@ -240,7 +250,10 @@ fn unheld(model: &Model) -> Vec<String> {
         bodies_at[node] += 1;
     }
     let joined = |body: &Body| body.nodes.iter().any(|&node| bodies_at[node] > 1);
-    let slaves = model.contacts.iter().map(|contact| &contact.node);
+    let contacts = model.contacts.iter();
+    let slaves: Vec<usize> = contacts
+        .flat_map(|contact| contact.carriers().map(|(node, _)| node))
+        .collect();
     let mut met: Vec<usize> = model
         .contacts
         .iter()
@@ -252,7 +265,7 @@ fn unheld(model: &Model) -> Vec<String> {
     let masters = met
         .iter()
         .flat_map(|&k| model.surfaces[k].elements.iter().flatten());
-    let at_contact = marked(model.nodes.len(), slaves.chain(masters));
+    let at_contact = marked(model.nodes.len(), slaves.iter().chain(masters));
     let touches = |body: &Body| body.nodes.iter().any(|&node| at_contact[node]);
     model
         .bodies

@@ -193,3 +193,31 @@ fn bodies_without_any_hold_and_bodies_that_overlap_are_warned_of() {
     );
     assert!(told.contains("bodies a and b overlap"), "{told}");
 }
+
+/// The points of faces are nodes of their own, which belong to no body.
+#[test]
+fn points_of_faces_hold_their_body_and_tell_a_surface_that_is_turned() {
+    let text = r#"(
+    title: "A pad on a base",
+    nodes: [
+        Block(id: "base", corners: [(0.0, 0.0), (2.0, 1.0)], elements: (2, 1)),
+        Block(id: "pad", corners: [(0.5, 1.0), (1.5, 2.0)], elements: (1, 1)),
+    ],
+    materials: [Elastic(id: "rubber", E: 100.0, nu: 0.3)],
+    bodies: [Solid(id: "base", mesh: "base", material: "rubber"), Solid(id: "pad", mesh: "pad", material: "rubber")],
+    surfaces: [(id: "top", along: "base.top", reverse: false)],
+    slaves: [(nodes: ["pad.bottom"], on: ["top"], law: Penalty(stiffness: 1e4), by: surface)],
+    supports: [(node: "base.bottom", fix: [x, y])],
+    history: (path: [0.0, 1.0], increment: 0.5),
+)"#;
+    let told = |text: &str| {
+        let scene = Scene::from_text("pad.ron", text, &[]).unwrap();
+        warnings(&scene.model)
+    };
+    assert_eq!(told(text), Vec::<String>::new());
+    let turned = told(&text.replace("reverse: false", "reverse: true"));
+    assert!(
+        turned[0].starts_with("surface top faces away from all its slave nodes"),
+        "{turned:?}"
+    );
+}
