@@ -4,7 +4,7 @@
 //! problem that is solved next. Slow parts (trials of remedies, the load that smaller steps reach) come last,
 //! so that the page grows while it is read.
 
-use super::advice::{Advice, FORCE_THIRD_MODE, advice};
+use super::advice::{FORCE_THIRD_MODE, advice, by_hand};
 use super::attempt::Attempt;
 use super::diagnosis::undecided;
 use super::examination::{DONE, Examination, frozen, nothing};
@@ -107,7 +107,7 @@ pub fn first_that_works(
     stop: &dyn Fn() -> bool,
 ) -> Option<TryLine> {
     let mut minors = 0;
-    for remedy in advised(stepper.model(), state, failure, Some(spec)) {
+    for remedy in advice(stepper.model(), state, failure, Some(spec)) {
         let typed = matches!(remedy.how, RemedyInput::Set(..) | RemedyInput::Restart(_));
         if !typed || minors >= most || stop() {
             continue;
@@ -121,16 +121,6 @@ pub fn first_that_works(
         }
     }
     None
-}
-
-/// The remedies for a failure that can be tried, in order of preference.
-fn advised(model: &Model, state: &State, failure: &Failure, spec: Option<&Spec>) -> Vec<Remedy> {
-    let pieces = advice(model, state, failure, spec).into_iter();
-    let remedies = pieces.filter_map(|piece| match piece {
-        Advice::Remedy(remedy) => Some(remedy),
-        Advice::ByHand(_) => None,
-    });
-    remedies.collect()
 }
 
 /// The diagnosis of a state, as the debugger shows it.
@@ -310,12 +300,8 @@ impl PageBuilder {
             // The wrong side explains the rest.
             let causes = page.facts.iter_mut().filter(|fact| fact.part == Part::Why);
             causes.skip(1).for_each(|fact| fact.part = Part::Details);
-        }
-        let model = stepper.model();
-        for piece in advice(model, state, failure, None) {
-            if let Advice::ByHand(text) = piece {
-                page.by_hand.push(text);
-            }
+        } else {
+            page.by_hand.extend(by_hand(state, failure));
         }
         page.facts
             .push(Fact::new(Part::Details, sound(state.next, state)));
@@ -536,7 +522,7 @@ impl PageBuilder {
             0
         });
         let certain = matches!(Remedy::law(model, state, failure), Some((_, true)));
-        let advised = advised(model, state, failure, spec);
+        let advised = advice(model, state, failure, spec);
         let (finer, advised): (Vec<Remedy>, Vec<Remedy>) = advised
             .into_iter()
             .partition(|remedy| remedy.kind == RemedyKind::Finer);

@@ -3,7 +3,7 @@
 //! [`super::remedy`] lists the remedies. A trial ends when the failed load is accepted, when it fails, or after
 //! [`BUDGET`] minor iterations. Its steps are recorded, so that the chosen remedy can be repeated in a branch.
 
-use super::advice::{Advice, advice};
+use super::advice::advice;
 use super::examination::{Examination, frozen};
 use super::remedy::{
     BLOCK, CONSISTENT_GEOMETRY, CONSISTENT_LIMIT, DAMP, LADDER, NEWTON, Remedy, RemedyInput,
@@ -163,10 +163,8 @@ pub fn all(
         }
     }
     if let Status::Failed(failure) = &state.status {
-        for advice in advice(model, state, failure, spec) {
-            if let Advice::Remedy(remedy) = advice
-                && (spec.is_some() || !matches!(remedy.how, RemedyInput::Restart(_)))
-            {
+        for remedy in advice(model, state, failure, spec) {
+            if spec.is_some() || !matches!(remedy.how, RemedyInput::Restart(_)) {
                 add(remedy);
             }
         }
