@@ -324,19 +324,10 @@ impl PageBuilder {
             }
             Failure::MajorCycle(round) => {
                 self.found.nodes = round.members.iter().map(|member| member.0).collect();
-                self.repeat(stepper, state, failure, stop, |model, attempt| {
-                    majors::cycle_words(model, attempt, round)
-                });
+                self.repeat(stepper, state, failure, stop);
             }
-            Failure::MajorLimit { .. } => {
-                self.repeat(stepper, state, failure, stop, |model, attempt| {
-                    majors::limit_words(model, &state.settings(), attempt)
-                });
-            }
-            Failure::Diverged { .. } => {
-                self.repeat(stepper, state, failure, stop, |model, attempt| {
-                    majors::flight_words(model, state, attempt)
-                });
+            Failure::MajorLimit { .. } | Failure::Diverged { .. } => {
+                self.repeat(stepper, state, failure, stop);
             }
             Failure::NotFound(NotFound::TooMany { nodes }) => self.facts.push(Fact::why(format!(
                 "strategy census tries all modes of at most {MOST} nodes, and {nodes} can touch"
@@ -411,26 +402,26 @@ impl PageBuilder {
         }
     }
 
-    /// Repeats the failed attempt, and adds facts about it.
-    fn repeat<F: IntoIterator<Item = Fact>>(
+    /// Repeats an attempt whose major iterations failed, and adds facts about it.
+    fn repeat(
         &mut self,
         stepper: &mut Stepper,
         state: &State,
         failure: &Failure,
         stop: &dyn Fn() -> bool,
-        facts: impl FnOnce(&Model, &Attempt) -> F,
     ) {
-        match Attempt::again(stepper, state, failure, stop) {
-            Some(attempt) => self.facts.extend(facts(stepper.model(), &attempt)),
-            None => self.not_again(),
-        }
-    }
-
-    fn not_again(&mut self) {
-        self.facts.push(Fact::new(
-            Part::Details,
-            "repeated from its start, the attempt ends differently: something was changed by hand during it",
-        ));
+        let Some(attempt) = Attempt::again(stepper, state, failure, stop) else {
+            return self.facts.push(Fact::new(
+                Part::Details,
+                "repeated from its start, the attempt ends differently: something was changed by hand during it",
+            ));
+        };
+        let model = stepper.model();
+        self.facts.extend(match failure {
+            Failure::MajorCycle(round) => majors::cycle_words(model, &attempt, round),
+            Failure::MajorLimit { .. } => majors::limit_words(model, &state.settings(), &attempt),
+            _ => majors::flight_words(model, state, &attempt),
+        });
     }
 
     /// The first strategy's failure in this major iteration, before the ladder continued.
