@@ -19,7 +19,7 @@ use super::load_limit_probe::{LoadLimitProbe, reach};
 use super::moves_away::moves_away;
 use super::remedies::{BUDGET, RemedyTrial, attempt_within};
 use super::remedy::{LADDER, Remedy};
-use super::restart::restart;
+use super::restart::{TrialEnd, restart};
 use super::rigid_motion::BodyMotion;
 use super::surface_end::passed_end;
 use super::try_list::helps;
@@ -205,10 +205,10 @@ fn with_ladder(
     stepper.restore(&state.attempt_again());
     stepper.intervene(&Intervention::Settings(settings)).ok()?;
     let run = restart(stepper, state, MOST_OF_LADDER.into(), stop)?;
-    match run.failure {
-        None => Some(Ok(run.minors)),
-        Some(Some(failure)) => Some(Err((stepper.state().clone(), failure))),
-        Some(None) => None,
+    match run.end {
+        TrialEnd::Converged => Some(Ok(run.minors)),
+        TrialEnd::Failed(failure) => Some(Err((stepper.state().clone(), failure))),
+        _ => None,
     }
 }
 
