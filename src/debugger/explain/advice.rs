@@ -5,11 +5,11 @@
 //! tried.
 
 use super::remedy::{
-    BLOCK, CONSISTENT_GEOMETRY, CONSISTENT_LIMIT, DAMP, LADDER, NEWTON, Remedy, RemedyKind, SEARCH,
-    STRESS_RESIDUAL, TOUCH_AT_START,
+    ADJUST, BLOCK, CONSISTENT_GEOMETRY, CONSISTENT_LIMIT, CUT_AT_JUMPS, DAMP, LADDER,
+    MOVE_AT_JUMPS, NEWTON, RAMP, Remedy, RemedyKind, SEARCH, STRESS_RESIDUAL, TOUCH_AT_START,
 };
 use super::surface_end::ending;
-use stickslip_core::model::{AtCycle, Geometry, InitialGaps, Jumps, ResidualMethod, SearchMode};
+use stickslip_core::model::{AtCycle, Geometry, ResidualMethod, SearchMode};
 use stickslip_core::{BoundUpdate, Failure, Mode, Model, Singular, State, Strategy};
 use stickslip_scene::Spec;
 use stickslip_scene::gaps::turned;
@@ -33,7 +33,6 @@ pub fn advice(model: &Model, state: &State, failure: &Failure, spec: Option<&Spe
     if !reverse.is_empty() {
         return reverse;
     }
-    let gaps = [InitialGaps::Ramp, InitialGaps::Adjust].map(RemedyKind::Gaps);
     let ends = ending(model, state).into_iter().map(RemedyKind::PastEnds);
     let rest = ends.chain(kinds(state, failure)).collect();
     let finer = spec.filter(|_| refines(failure)).map(Remedy::finer);
@@ -41,7 +40,7 @@ pub fn advice(model: &Model, state: &State, failure: &Failure, spec: Option<&Spe
         Some((law, true)) => (Some(law), None),
         law => (None, law.map(|(law, _)| law)),
     };
-    possible(gaps.into())
+    possible(vec![RAMP, ADJUST])
         .into_iter()
         .chain(first)
         .chain(possible(rest))
@@ -144,13 +143,7 @@ fn kinds(state: &State, failure: &Failure) -> Vec<RemedyKind> {
             all = kinds(state, last);
             all.retain(|kind| *kind != SEARCH && !matches!(kind, RemedyKind::Part(_)));
         }
-        Failure::BranchJump { .. } => add(
-            true,
-            &[
-                RemedyKind::Jumps(Jumps::Cut),
-                RemedyKind::Jumps(Jumps::Dynamic),
-            ],
-        ),
+        Failure::BranchJump { .. } => add(true, &[CUT_AT_JUMPS, MOVE_AT_JUMPS]),
         Failure::NoAnswer { .. }
         | Failure::PathReversal
         | Failure::ZeroMeasure

@@ -19,7 +19,7 @@ use super::load_limit_probe::reach;
 use super::majors;
 use super::names;
 use super::remedies::{RemedyTrial, attempt};
-use super::remedy::{Remedy, RemedyInput, RemedyKind};
+use super::remedy::{RAMP, Remedy, RemedyInput, RemedyKind};
 use super::report::sound;
 use super::rigid_motion::loose;
 use super::strain::MaterialCause;
@@ -27,7 +27,7 @@ use super::try_list::{self, TryLine, TryOutcome, helps};
 use stickslip_core::interface::census::MOST;
 use stickslip_core::model::FinishedRun;
 use stickslip_core::{
-    Body, BodyKind, Failure, InitialGaps, Model, Norms, NotFound, Singular, State, Status, Stepper,
+    Body, BodyKind, Failure, Model, Norms, NotFound, Singular, State, Status, Stepper,
 };
 use stickslip_scene::gaps::turned;
 use stickslip_scene::{Spec, sig2, sig4};
@@ -285,8 +285,7 @@ impl PageBuilder {
         let cause = MaterialCause::find(stepper.model(), state, failure);
         let certain = cause.filter(MaterialCause::is_certain);
         let words = |cause: MaterialCause| Fact::why(cause.words(stepper.model()));
-        let overlap =
-            Remedy::from_kind(RemedyKind::Gaps(InitialGaps::Ramp), stepper.model(), state);
+        let overlap = Remedy::from_kind(RAMP, stepper.model(), state);
         page.facts.extend(overlap.map(|_| Fact::why(OVERLAP)));
         let turned = turned(stepper.model());
         let is_turned = !turned.is_empty();
