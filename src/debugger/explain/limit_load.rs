@@ -31,7 +31,7 @@ use stickslip_core::model::Geometry;
 use stickslip_core::plane::max_abs;
 use stickslip_core::step::arc_state::Change;
 use stickslip_core::{
-    Body, BodyKind, ContactRecord, Failure, Intervention, Mode, Model, Outcome, PointDeformation,
+    Body, ContactRecord, Failure, Intervention, Mode, Model, Outcome, PointDeformation,
     RigidMotion, RunEnd, SearchMode, Settings, Singular, State, Stepper, Strategy, Until, counted,
     strategy,
 };
@@ -258,9 +258,8 @@ pub fn limit_load(
     failure: &Failure,
     stop: &dyn Fn() -> bool,
 ) -> Option<LoadEnd> {
-    let is_mesh = |body: &Body| !matches!(body.kind, BodyKind::Linear(_));
     let named = strategy::rungs(state.controls.settings.strategy).is_empty();
-    if !named || state.way.is_some() || !stepper.model().bodies.iter().any(is_mesh) {
+    if !named || state.way.is_some() || stepper.model().bodies.iter().all(Body::is_linear) {
         return of_cut_increment(stepper, state, failure, stop).map(LoadEnd::Limit);
     }
     match with_ladder(stepper, state, stop)? {

@@ -449,9 +449,8 @@ impl PageBuilder {
         self.found.arrows = arrows;
         self.found.nodes.extend(nodes);
         stepper.restore(state);
-        let given = |body: &Body| matches!(body.kind, BodyKind::Linear(_));
         // Only a matrix that was written down has been rounded; computed ones are exact to round-off.
-        if stepper.model().bodies.iter().any(given)
+        if stepper.model().bodies.iter().any(Body::is_linear)
             && let Some(problem) = stepper.interface_problem()
             && let Some(problem) = problem.reduced(&undecided(&problem))
             && let Some(text) = indefinite(&problem, stop)
@@ -584,8 +583,7 @@ impl PageBuilder {
 
 /// Why equations may be singular although no body has a free rigid motion.
 fn unexplained(model: &Model) -> &'static str {
-    let given = |body: &Body| matches!(body.kind, BodyKind::Linear(_));
-    if model.bodies.iter().any(given) {
+    if model.bodies.iter().any(Body::is_linear) {
         "in one direction the forces do not change: the matrix of a body is singular and no contact restrains it, or the load has reached its maximum on this branch (a limit point)"
     } else {
         "in one direction the forces do not change, although every body is held: the load has reached its maximum on this branch (a limit point), or contacts and supports are redundant"
