@@ -11,7 +11,7 @@ use stickslip_core::contact::projection::{project, projection_at};
 use stickslip_core::fem::lagrange;
 use stickslip_core::plane::{dot, range};
 use stickslip_core::{
-    Body, BodyKind, Contact, InitialGaps, Model, Node, Surface, SurfaceElement, SurfacePoint,
+    Body, Contact, InitialGaps, Model, Node, Surface, SurfaceElement, SurfacePoint,
 };
 
 /// Gaps below this fraction of the scene's length count as zero.
@@ -270,7 +270,7 @@ fn unheld(model: &Model) -> Vec<String> {
     model
         .bodies
         .iter()
-        .filter(|body| !matches!(body.kind, BodyKind::Linear(_)))
+        .filter(|body| !body.is_linear())
         .filter(|body| !body.nodes.iter().any(|&node| held(node)))
         .filter(|body| !joined(body) && !touches(body))
         .map(|body| {

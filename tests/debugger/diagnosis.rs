@@ -3,7 +3,7 @@
 
 use crate::common::{Run, force, go_on, run, scene};
 use std::sync::Arc;
-use stickslip::explain::advice::{Advice, advice};
+use stickslip::explain::advice::advice;
 use stickslip::explain::attempt::{Attempt, Major};
 use stickslip::explain::diagnosis::{Cause, Diagnosis, words};
 use stickslip::explain::facts::Part;
@@ -164,7 +164,7 @@ fn a_surface_that_most_of_its_nodes_are_behind_is_the_wrong_way_round_and_revers
         .state()
         .clone();
     let advised = advice(&reversed.model, &state, &Failure::PathReversal, None);
-    let [Advice::Remedy(remedy)] = advised.as_slice() else {
+    let [remedy] = advised.as_slice() else {
         panic!("{advised:?}");
     };
     assert_eq!(remedy.how.typed(), "--set surfaces.punch.reverse=true");
@@ -189,11 +189,7 @@ fn after_too_many_cuts_the_remedies_are_those_of_the_last_failure_without_smalle
     };
     let typed = |failure: &Failure| -> Vec<String> {
         let advised = advice(&model, &state, failure, None).into_iter();
-        let remedies = advised.filter_map(|advice| match advice {
-            Advice::Remedy(remedy) => Some(remedy.how.typed()),
-            Advice::ByHand(_) => None,
-        });
-        remedies.collect()
+        advised.map(|remedy| remedy.how.typed()).collect()
     };
     let (once, often) = (typed(&last), typed(&cut));
     let smaller = |how: &&String| how.starts_with(":increment");

@@ -4,7 +4,7 @@
 //! restrained ones. Internal forces are invariant under rigid motions, so their sum and the sum of their moments vanish; the same
 //! then holds for the reactions and the loads together.
 
-use crate::model::{Body, BodyKind};
+use crate::model::Body;
 use crate::{Finding, JudgedLaw, JudgedNumbers, Model, Scales, Verdict};
 
 /// Forces by degree of freedom ([`crate::model::Dofs`]), and the contact forces by node.
@@ -62,8 +62,9 @@ pub fn check(
     });
     // The matrix of a body may contain supports. If small and large displacements are mixed, there is no common shape for the
     // moments.
-    let given = |body: &Body| matches!(body.kind, BodyKind::Linear(_));
-    if model.bodies.iter().any(given) || (!small && model.bodies.iter().any(Body::has_small_part)) {
+    if model.bodies.iter().any(Body::is_linear)
+        || (!small && model.bodies.iter().any(Body::has_small_part))
+    {
         return;
     }
     verdict.add(Finding {

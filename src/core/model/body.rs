@@ -36,6 +36,11 @@ impl Body {
         }
     }
 
+    /// Whether it is given by a matrix.
+    pub fn is_linear(&self) -> bool {
+        matches!(self.kind, BodyKind::Linear(_))
+    }
+
     /// Whether it is a body of revolution.
     pub fn is_axisymmetric(&self) -> bool {
         let round = |material: &Elastic| material.plane == Plane::Axisymmetric;

@@ -332,7 +332,7 @@ impl Model {
 
     /// Whether no body's stiffness depends on its displacements.
     pub fn has_constant_stiffness(&self) -> bool {
-        let constant = |body: &Body| body.is_small() || matches!(body.kind, BodyKind::Linear(_));
+        let constant = |body: &Body| body.is_small() || body.is_linear();
         self.bodies.iter().all(constant)
     }
 

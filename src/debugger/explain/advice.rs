@@ -5,76 +5,46 @@
 //! tried.
 
 use super::remedy::{
-    BLOCK, CONSISTENT_GEOMETRY, CONSISTENT_LIMIT, DAMP, LADDER, NEWTON, Remedy, RemedyKind, SEARCH,
-    STRESS_RESIDUAL, TOUCH_AT_START,
+    ADJUST, BLOCK, CONSISTENT_GEOMETRY, CONSISTENT_LIMIT, CUT_AT_JUMPS, DAMP, LADDER,
+    MOVE_AT_JUMPS, NEWTON, RAMP, Remedy, RemedyKind, SEARCH, STRESS_RESIDUAL, TOUCH_AT_START,
 };
 use super::surface_end::ending;
-use stickslip_core::model::{AtCycle, Geometry, InitialGaps, Jumps, ResidualMethod, SearchMode};
+use stickslip_core::model::{AtCycle, Geometry, ResidualMethod, SearchMode};
 use stickslip_core::{BoundUpdate, Failure, Mode, Model, Singular, State, Strategy};
 use stickslip_scene::Spec;
 use stickslip_scene::gaps::turned;
 
-/// A possible measure.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Advice {
-    /// Can be tried from the state.
-    Remedy(Remedy),
-    /// Done by the user, in the scene's file or the debugger.
-    ByHand(&'static str),
-}
-
-/// What to do about a failure, in order of preference; `spec` is the scene as written by its author, from which a finer mesh can
+/// What to try against a failure, in order of preference; `spec` is the scene as written by its author, from which a finer mesh can
 /// be generated.
-pub fn advice(model: &Model, state: &State, failure: &Failure, spec: Option<&Spec>) -> Vec<Advice> {
-    let reverse: Vec<Advice> = turned(model)
-        .into_iter()
-        .filter_map(|found| Remedy::from_kind(RemedyKind::Reverse(found.surface), model, state))
-        .map(Advice::Remedy)
-        .collect();
+pub fn advice(model: &Model, state: &State, failure: &Failure, spec: Option<&Spec>) -> Vec<Remedy> {
+    let possible = |kinds: Vec<RemedyKind>| -> Vec<Remedy> {
+        let kinds = kinds.into_iter();
+        kinds
+            .filter_map(|kind| Remedy::from_kind(kind, model, state))
+            .collect()
+    };
+    let turned = turned(model).into_iter();
+    let reverse = possible(
+        turned
+            .map(|found| RemedyKind::Reverse(found.surface))
+            .collect(),
+    );
     // Against a wrong side nothing else helps.
     if !reverse.is_empty() {
         return reverse;
     }
-    let remedies = kinds(state, failure)
-        .into_iter()
-        .filter_map(|kind| Remedy::from_kind(kind, model, state))
-        .map(Advice::Remedy);
-    let by_hand = by_hand(state, failure).iter().copied().map(Advice::ByHand);
-    // A missing support or another load cannot be replaced by any setting.
-    let scene_first = matches!(
-        failure,
-        Failure::Singular(Singular::Rigid { .. })
-            | Failure::NoAnswer { .. }
-            | Failure::RoundOff { .. }
-            | Failure::OverConstrained { .. }
-            | Failure::BranchJump { .. }
-            | Failure::PathReversal
-            | Failure::ZeroMeasure
-    );
-    let finer = spec.filter(|_| refines(failure));
-    let finer = finer.map(|spec| Advice::Remedy(Remedy::finer(spec)));
-    let gaps = [InitialGaps::Ramp, InitialGaps::Adjust]
-        .into_iter()
-        .filter_map(|gaps| Remedy::from_kind(RemedyKind::Gaps(gaps), model, state))
-        .map(Advice::Remedy);
-    let ends = ending(model, state)
-        .into_iter()
-        .filter_map(|surface| Remedy::from_kind(RemedyKind::PastEnds(surface), model, state))
-        .map(Advice::Remedy);
-    let rest: Vec<Advice> = if scene_first {
-        by_hand.chain(remedies).collect()
-    } else {
-        remedies.chain(finer).chain(by_hand).collect()
-    };
-    let law = Remedy::law(model, state, failure);
-    let (first, last) = match law {
+    let ends = ending(model, state).into_iter().map(RemedyKind::PastEnds);
+    let rest = ends.chain(kinds(state, failure)).collect();
+    let finer = spec.filter(|_| refines(failure)).map(Remedy::finer);
+    let (first, last) = match Remedy::law(model, state, failure) {
         Some((law, true)) => (Some(law), None),
         law => (None, law.map(|(law, _)| law)),
     };
-    let (first, last) = (first.map(Advice::Remedy), last.map(Advice::Remedy));
-    gaps.chain(first)
-        .chain(ends)
-        .chain(rest)
+    possible(vec![RAMP, ADJUST])
+        .into_iter()
+        .chain(first)
+        .chain(possible(rest))
+        .chain(finer)
         .chain(last)
         .collect()
 }
@@ -173,13 +143,7 @@ fn kinds(state: &State, failure: &Failure) -> Vec<RemedyKind> {
             all = kinds(state, last);
             all.retain(|kind| *kind != SEARCH && !matches!(kind, RemedyKind::Part(_)));
         }
-        Failure::BranchJump { .. } => add(
-            true,
-            &[
-                RemedyKind::Jumps(Jumps::Cut),
-                RemedyKind::Jumps(Jumps::Dynamic),
-            ],
-        ),
+        Failure::BranchJump { .. } => add(true, &[CUT_AT_JUMPS, MOVE_AT_JUMPS]),
         Failure::NoAnswer { .. }
         | Failure::PathReversal
         | Failure::ZeroMeasure
@@ -197,7 +161,7 @@ fn kinds(state: &State, failure: &Failure) -> Vec<RemedyKind> {
 pub(super) const FORCE_THIRD_MODE: &str = "forcing a node into its third mode (m)";
 
 /// What the user can do in the scene's file or in the debugger.
-fn by_hand(state: &State, failure: &Failure) -> &'static [&'static str] {
+pub(super) fn by_hand(state: &State, failure: &Failure) -> &'static [&'static str] {
     match failure {
         Failure::Cycle(_) => &[FORCE_THIRD_MODE],
         Failure::MajorCycle(_) => &["replacing the kink by an arc, if it is a corner of the body"],

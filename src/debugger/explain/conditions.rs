@@ -4,7 +4,7 @@ use super::outline::Point;
 use std::collections::{BTreeMap, BTreeSet};
 use stickslip_core::model::Factor;
 use stickslip_core::plane::{dot, minus};
-use stickslip_core::{BodyKind, Component, Model};
+use stickslip_core::{Component, Model};
 
 /// What an arrow or a turn stands for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -141,7 +141,7 @@ pub fn supports(model: &Model) -> Vec<Support> {
     let mut nodes: Vec<usize> = model
         .bodies
         .iter()
-        .filter(|body| !matches!(body.kind, BodyKind::Linear(_)))
+        .filter(|body| !body.is_linear())
         .flat_map(|body| body.nodes.iter().copied())
         .collect();
     nodes.sort_unstable();

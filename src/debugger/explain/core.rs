@@ -131,6 +131,12 @@ pub(super) fn changes<T: PartialEq>(pattern: &[T]) -> bool {
 /// The cycle that the minor iterations of a frozen problem run into. `None` if they settle, cannot be solved,
 /// or reach the limit of the settings first. Members are indices in the problem.
 pub fn cycle(problem: &InterfaceProblem) -> Option<Cycle> {
+    end(problem)?.err()
+}
+
+/// How the minor iterations of a frozen problem end: they settle, or run into a cycle. `None` if they cannot be solved, or reach
+/// the limit of the settings first.
+pub(super) fn end(problem: &InterfaceProblem) -> Option<Result<(), Cycle>> {
     let mut nodes = problem.states();
     let mut trials = Trials::new(problem)?;
     let mut trail = MinorHistory::default();
@@ -138,7 +144,7 @@ pub fn cycle(problem: &InterfaceProblem) -> Option<Cycle> {
         trail.push(&nodes);
         let (_, settled) = trials.minor(&mut nodes, method(problem.settings.strategy))?;
         if settled {
-            return None;
+            return Some(Ok(()));
         }
         if let Some(cycle) = trail.cycle(
             &nodes,
@@ -146,10 +152,10 @@ pub fn cycle(problem: &InterfaceProblem) -> Option<Cycle> {
             SAME_ITERATION * problem.force,
             SAME_ITERATION,
         ) {
-            return Some(cycle);
+            return Some(Err(cycle));
         }
     }
-    spiralling(problem)
+    spiralling(problem).map(Err)
 }
 
 /// The cycle of modes while T_max still spirals in too slowly to repeat within the limit.

@@ -1,7 +1,7 @@
 //! Why the minor iterations cycle and what escapes the cycle, found from its frozen interface problem, as data
 //! and in words.
 
-use crate::explain::core::{Core, changes, core, cycle};
+use crate::explain::core::{Core, changes, core, cycle, end};
 use crate::explain::facts::{Fact, Part};
 use crate::explain::influence::{Influence, influences};
 use crate::explain::{names, proven, tested};
@@ -288,7 +288,7 @@ fn cause(
 
 /// Tries changes on the frozen problem alone.
 fn ways(problem: &InterfaceProblem, census: Option<&Census>) -> Vec<(FrozenChange, bool)> {
-    let settles = |changed: &InterfaceProblem| cycle(changed).is_none() && runs(changed);
+    let settles = |changed: &InterfaceProblem| end(changed) == Some(Ok(()));
     let mut ways = Vec::new();
     for number in 0..census.map_or(0, |c| c.answers.len().min(MOST_TOLD)) {
         if let Some(started) = census.and_then(|census| started(problem, census, number)) {
@@ -325,17 +325,6 @@ pub fn started(
         node.state.t_max = found.limit * node.state.sign;
     }
     Some(started)
-}
-
-/// Whether the minor iterations settle within the settings' limit.
-fn runs(problem: &InterfaceProblem) -> bool {
-    let mut nodes = problem.states();
-    let Some(mut trials) = Trials::new(problem) else {
-        return false;
-    };
-    (0..problem.settings.minors)
-        .map_while(|_| trials.minor(&mut nodes, method(problem.settings.strategy)))
-        .any(|(_, settled)| settled)
 }
 
 /// What cycles, in one line.

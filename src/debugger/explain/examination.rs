@@ -93,7 +93,7 @@ pub fn frozen(stepper: &mut Stepper, state: &State, stop: &dyn Fn() -> bool) -> 
         let head = diagnosis::head(model, &problem, &diagnosis);
         if diagnosis.cause == Cause::NoAnswer {
             let found = smaller(stepper, state);
-            facts.extend(found.map(|found| Fact::why(found.words())));
+            facts.extend(found.map(Fact::why));
         }
         return Examination {
             head,
@@ -126,9 +126,7 @@ pub fn frozen(stepper: &mut Stepper, state: &State, stop: &dyn Fn() -> bool) -> 
         .is_some_and(|census| census.answers.is_empty())
     {
         let smaller = smaller(stepper, state);
-        found
-            .facts
-            .extend(smaller.map(|found| Fact::why(found.words())));
+        found.facts.extend(smaller.map(Fact::why));
     }
     found
 }

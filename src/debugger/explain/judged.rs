@@ -21,7 +21,7 @@ pub fn finding(model: &Model, finding: &Finding) -> String {
     let node = finding.slave.map_or("a node", |s| slave(model, s));
     let text = match finding.law {
         JudgedLaw::Penetration => format!("{node} penetrates its surface by {gap}"),
-        JudgedLaw::Gap if finding.amount.is_infinite() => {
+        JudgedLaw::Gap | JudgedLaw::Penalty if finding.amount.is_infinite() => {
             format!("{node} carries a force without facing a surface")
         }
         JudgedLaw::Gap => format!("{node} carries a force across a gap of {gap}"),
@@ -47,9 +47,6 @@ pub fn finding(model: &Model, finding: &Finding) -> String {
         ),
         JudgedLaw::Work => {
             format!("friction produced work at {node} (slip {slip}, final F_t {f_t})")
-        }
-        JudgedLaw::Penalty if finding.amount.is_infinite() => {
-            format!("{node} carries a force without facing a surface")
         }
         JudgedLaw::Penalty => format!(
             "{node} penetrates its surface by {gap}, which does not match its penalty law for F_n {f_n}"

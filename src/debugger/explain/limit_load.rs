@@ -19,7 +19,7 @@ use super::load_limit_probe::{LoadLimitProbe, reach};
 use super::moves_away::moves_away;
 use super::remedies::{BUDGET, RemedyTrial, attempt_within};
 use super::remedy::{LADDER, Remedy};
-use super::restart::restart;
+use super::restart::{TrialEnd, restart};
 use super::rigid_motion::BodyMotion;
 use super::surface_end::passed_end;
 use super::try_list::helps;
@@ -31,7 +31,7 @@ use stickslip_core::model::Geometry;
 use stickslip_core::plane::max_abs;
 use stickslip_core::step::arc_state::Change;
 use stickslip_core::{
-    Body, BodyKind, ContactRecord, Failure, Intervention, Mode, Model, Outcome, PointDeformation,
+    Body, ContactRecord, Failure, Intervention, Mode, Model, Outcome, PointDeformation,
     RigidMotion, RunEnd, SearchMode, Settings, Singular, State, Stepper, Strategy, Until, counted,
     strategy,
 };
@@ -205,10 +205,10 @@ fn with_ladder(
     stepper.restore(&state.attempt_again());
     stepper.intervene(&Intervention::Settings(settings)).ok()?;
     let run = restart(stepper, state, MOST_OF_LADDER.into(), stop)?;
-    match run.failure {
-        None => Some(Ok(run.minors)),
-        Some(Some(failure)) => Some(Err((stepper.state().clone(), failure))),
-        Some(None) => None,
+    match run.end {
+        TrialEnd::Converged => Some(Ok(run.minors)),
+        TrialEnd::Failed(failure) => Some(Err((stepper.state().clone(), failure))),
+        _ => None,
     }
 }
 
@@ -258,9 +258,8 @@ pub fn limit_load(
     failure: &Failure,
     stop: &dyn Fn() -> bool,
 ) -> Option<LoadEnd> {
-    let is_mesh = |body: &Body| !matches!(body.kind, BodyKind::Linear(_));
     let named = strategy::rungs(state.controls.settings.strategy).is_empty();
-    if !named || state.way.is_some() || !stepper.model().bodies.iter().any(is_mesh) {
+    if !named || state.way.is_some() || stepper.model().bodies.iter().all(Body::is_linear) {
         return of_cut_increment(stepper, state, failure, stop).map(LoadEnd::Limit);
     }
     match with_ladder(stepper, state, stop)? {

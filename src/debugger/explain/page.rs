@@ -4,7 +4,7 @@
 //! problem that is solved next. Slow parts (trials of remedies, the load that smaller steps reach) come last,
 //! so that the page grows while it is read.
 
-use super::advice::{Advice, FORCE_THIRD_MODE, advice};
+use super::advice::{FORCE_THIRD_MODE, advice, by_hand};
 use super::attempt::Attempt;
 use super::diagnosis::undecided;
 use super::examination::{DONE, Examination, frozen, nothing};
@@ -19,7 +19,7 @@ use super::load_limit_probe::reach;
 use super::majors;
 use super::names;
 use super::remedies::{RemedyTrial, attempt};
-use super::remedy::{Remedy, RemedyInput, RemedyKind};
+use super::remedy::{RAMP, Remedy, RemedyInput, RemedyKind};
 use super::report::sound;
 use super::rigid_motion::loose;
 use super::strain::MaterialCause;
@@ -27,7 +27,7 @@ use super::try_list::{self, TryLine, TryOutcome, helps};
 use stickslip_core::interface::census::MOST;
 use stickslip_core::model::FinishedRun;
 use stickslip_core::{
-    Body, BodyKind, Failure, InitialGaps, Model, Norms, NotFound, Singular, State, Status, Stepper,
+    Body, BodyKind, Failure, Model, Norms, NotFound, Singular, State, Status, Stepper,
 };
 use stickslip_scene::gaps::turned;
 use stickslip_scene::{Spec, sig2, sig4};
@@ -107,7 +107,7 @@ pub fn first_that_works(
     stop: &dyn Fn() -> bool,
 ) -> Option<TryLine> {
     let mut minors = 0;
-    for remedy in advised(stepper.model(), state, failure, Some(spec)) {
+    for remedy in advice(stepper.model(), state, failure, Some(spec)) {
         let typed = matches!(remedy.how, RemedyInput::Set(..) | RemedyInput::Restart(_));
         if !typed || minors >= most || stop() {
             continue;
@@ -121,16 +121,6 @@ pub fn first_that_works(
         }
     }
     None
-}
-
-/// The remedies for a failure that can be tried, in order of preference.
-fn advised(model: &Model, state: &State, failure: &Failure, spec: Option<&Spec>) -> Vec<Remedy> {
-    let pieces = advice(model, state, failure, spec).into_iter();
-    let remedies = pieces.filter_map(|piece| match piece {
-        Advice::Remedy(remedy) => Some(remedy),
-        Advice::ByHand(_) => None,
-    });
-    remedies.collect()
 }
 
 /// The diagnosis of a state, as the debugger shows it.
@@ -295,8 +285,7 @@ impl PageBuilder {
         let cause = MaterialCause::find(stepper.model(), state, failure);
         let certain = cause.filter(MaterialCause::is_certain);
         let words = |cause: MaterialCause| Fact::why(cause.words(stepper.model()));
-        let overlap =
-            Remedy::from_kind(RemedyKind::Gaps(InitialGaps::Ramp), stepper.model(), state);
+        let overlap = Remedy::from_kind(RAMP, stepper.model(), state);
         page.facts.extend(overlap.map(|_| Fact::why(OVERLAP)));
         let turned = turned(stepper.model());
         let is_turned = !turned.is_empty();
@@ -310,12 +299,8 @@ impl PageBuilder {
             // The wrong side explains the rest.
             let causes = page.facts.iter_mut().filter(|fact| fact.part == Part::Why);
             causes.skip(1).for_each(|fact| fact.part = Part::Details);
-        }
-        let model = stepper.model();
-        for piece in advice(model, state, failure, None) {
-            if let Advice::ByHand(text) = piece {
-                page.by_hand.push(text);
-            }
+        } else {
+            page.by_hand.extend(by_hand(state, failure));
         }
         page.facts
             .push(Fact::new(Part::Details, sound(state.next, state)));
@@ -338,19 +323,10 @@ impl PageBuilder {
             }
             Failure::MajorCycle(round) => {
                 self.found.nodes = round.members.iter().map(|member| member.0).collect();
-                self.repeat(stepper, state, failure, stop, |model, attempt| {
-                    majors::cycle_words(model, attempt, round)
-                });
+                self.repeat(stepper, state, failure, stop);
             }
-            Failure::MajorLimit { .. } => {
-                self.repeat(stepper, state, failure, stop, |model, attempt| {
-                    majors::limit_words(model, &state.settings(), attempt)
-                });
-            }
-            Failure::Diverged { .. } => {
-                self.repeat(stepper, state, failure, stop, |model, attempt| {
-                    majors::flight_words(model, state, attempt)
-                });
+            Failure::MajorLimit { .. } | Failure::Diverged { .. } => {
+                self.repeat(stepper, state, failure, stop);
             }
             Failure::NotFound(NotFound::TooMany { nodes }) => self.facts.push(Fact::why(format!(
                 "strategy census tries all modes of at most {MOST} nodes, and {nodes} can touch"
@@ -425,26 +401,26 @@ impl PageBuilder {
         }
     }
 
-    /// Repeats the failed attempt, and adds facts about it.
-    fn repeat<F: IntoIterator<Item = Fact>>(
+    /// Repeats an attempt whose major iterations failed, and adds facts about it.
+    fn repeat(
         &mut self,
         stepper: &mut Stepper,
         state: &State,
         failure: &Failure,
         stop: &dyn Fn() -> bool,
-        facts: impl FnOnce(&Model, &Attempt) -> F,
     ) {
-        match Attempt::again(stepper, state, failure, stop) {
-            Some(attempt) => self.facts.extend(facts(stepper.model(), &attempt)),
-            None => self.not_again(),
-        }
-    }
-
-    fn not_again(&mut self) {
-        self.facts.push(Fact::new(
-            Part::Details,
-            "repeated from its start, the attempt ends differently: something was changed by hand during it",
-        ));
+        let Some(attempt) = Attempt::again(stepper, state, failure, stop) else {
+            return self.facts.push(Fact::new(
+                Part::Details,
+                "repeated from its start, the attempt ends differently: something was changed by hand during it",
+            ));
+        };
+        let model = stepper.model();
+        self.facts.extend(match failure {
+            Failure::MajorCycle(round) => majors::cycle_words(model, &attempt, round),
+            Failure::MajorLimit { .. } => majors::limit_words(model, &state.settings(), &attempt),
+            _ => majors::flight_words(model, state, &attempt),
+        });
     }
 
     /// The first strategy's failure in this major iteration, before the ladder continued.
@@ -473,9 +449,8 @@ impl PageBuilder {
         self.found.arrows = arrows;
         self.found.nodes.extend(nodes);
         stepper.restore(state);
-        let given = |body: &Body| matches!(body.kind, BodyKind::Linear(_));
         // Only a matrix that was written down has been rounded; computed ones are exact to round-off.
-        if stepper.model().bodies.iter().any(given)
+        if stepper.model().bodies.iter().any(Body::is_linear)
             && let Some(problem) = stepper.interface_problem()
             && let Some(problem) = problem.reduced(&undecided(&problem))
             && let Some(text) = indefinite(&problem, stop)
@@ -536,7 +511,7 @@ impl PageBuilder {
             0
         });
         let certain = matches!(Remedy::law(model, state, failure), Some((_, true)));
-        let advised = advised(model, state, failure, spec);
+        let advised = advice(model, state, failure, spec);
         let (finer, advised): (Vec<Remedy>, Vec<Remedy>) = advised
             .into_iter()
             .partition(|remedy| remedy.kind == RemedyKind::Finer);
@@ -608,8 +583,7 @@ impl PageBuilder {
 
 /// Why equations may be singular although no body has a free rigid motion.
 fn unexplained(model: &Model) -> &'static str {
-    let given = |body: &Body| matches!(body.kind, BodyKind::Linear(_));
-    if model.bodies.iter().any(given) {
+    if model.bodies.iter().any(Body::is_linear) {
         "in one direction the forces do not change: the matrix of a body is singular and no contact restrains it, or the load has reached its maximum on this branch (a limit point)"
     } else {
         "in one direction the forces do not change, although every body is held: the load has reached its maximum on this branch (a limit point), or contacts and supports are redundant"

@@ -3,12 +3,13 @@
 //! [`super::remedy`] lists the remedies. A trial ends when the failed load is accepted, when it fails, or after
 //! [`BUDGET`] minor iterations. Its steps are recorded, so that the chosen remedy can be repeated in a branch.
 
-use super::advice::{Advice, advice};
+use super::advice::advice;
 use super::examination::{Examination, frozen};
 use super::remedy::{
     BLOCK, CONSISTENT_GEOMETRY, CONSISTENT_LIMIT, DAMP, LADDER, NEWTON, Remedy, RemedyInput,
     RemedyKind, STRESS_RESIDUAL, TOUCH_AT_START,
 };
+pub use super::restart::TrialEnd;
 use super::restart::{self, FailedLoad};
 use super::tested::Dimension;
 use std::cmp::Ordering;
@@ -16,7 +17,7 @@ use std::ops::ControlFlow;
 use stickslip_core::step::drive::drive;
 use stickslip_core::{
     Capabilities, ContactRecord, Event, Failure, Forced, Intervention, JudgedLaw, Mode, Model,
-    Norms, NotFound, Outcome, RunEnd, Solver, State, Status, Stepper, Until,
+    Norms, NotFound, Outcome, Solver, State, Status, Stepper, Until,
 };
 use stickslip_platform::clock::Instant;
 use stickslip_scene::Spec;
@@ -31,19 +32,6 @@ const BUDGET_ATTACHED: u32 = 60;
 pub const HYSTERESIS: f64 = 1e-3;
 /// Relative violations below this are round-off.
 pub const CLEAN: f64 = 1e-8;
-
-/// How a trial ended.
-#[derive(Debug, Clone, PartialEq)]
-pub enum TrialEnd {
-    /// The failed load was accepted.
-    Converged,
-    /// A state was accepted that violates this law, because of held modes or settings.
-    Against(JudgedLaw),
-    /// It failed.
-    Failed(Failure),
-    /// The budget is used up.
-    Budget,
-}
 
 /// Amounts below this are round-off and shown as zero.
 const ROUND_OFF: f64 = 1e-14;
@@ -163,10 +151,8 @@ pub fn all(
         }
     }
     if let Status::Failed(failure) = &state.status {
-        for advice in advice(model, state, failure, spec) {
-            if let Advice::Remedy(remedy) = advice
-                && (spec.is_some() || !matches!(remedy.how, RemedyInput::Restart(_)))
-            {
+        for remedy in advice(model, state, failure, spec) {
+            if spec.is_some() || !matches!(remedy.how, RemedyInput::Restart(_)) {
                 add(remedy);
             }
         }
@@ -221,11 +207,7 @@ fn attempt_restart(
     trial.seconds = began.elapsed().as_secs_f64();
     (trial.minors, trial.majors) = (count(run.minors), count(run.majors));
     trial.factorizations = count(run.factorizations);
-    trial.end = match run.failure {
-        None => TrialEnd::Converged,
-        Some(None) => TrialEnd::Budget,
-        Some(Some(failure)) => TrialEnd::Failed(failure),
-    };
+    trial.end = run.end;
     if trial.end == TrialEnd::Converged
         && let Outcome::Increment { after, .. } = &stepper.event().outcome
     {
@@ -308,13 +290,7 @@ pub fn attempt_within(
         began = Instant::now();
         ControlFlow::Continue(())
     });
-    trial.end = match end.ok()? {
-        RunEnd::Interrupted => return None,
-        RunEnd::Stopped(end) => end,
-        RunEnd::Failed(failure) => TrialEnd::Failed(failure),
-        RunEnd::Finished => TrialEnd::Converged,
-        RunEnd::Spent => TrialEnd::Budget,
-    };
+    trial.end = TrialEnd::from_run(end.ok()?)?;
     // Count the last major iteration, even if the trial ended within it.
     if is_own && trial.end == TrialEnd::Budget {
         trial.factorizations += 1;

@@ -38,13 +38,13 @@ pub enum RemedyKind {
     /// Nodes keep their mode as long as they violate its condition only slightly.
     Hysteresis,
     /// Treatment of nodes that start inside their surface; tried from the start of the scene.
-    Gaps(InitialGaps),
+    Gaps(&'static str),
     /// The surface with this number the other way round; tried from the start of the scene.
     Reverse(usize),
     /// The surface with this number continued past its ends; tried from the start of the scene.
     PastEnds(usize),
     /// Another treatment of increments that jump to another branch; tried from the start of the scene.
-    Jumps(Jumps),
+    Jumps(&'static str, &'static str),
     /// Every generated element divided in two; tried from the start of the scene.
     Finer,
     /// A material law whose range contains the state of a solid; tried from the start of the scene.
@@ -76,6 +76,14 @@ pub(super) const TOUCH_AT_START: RemedyKind =
 /// Solve half the load first after a cycle.
 pub(super) const DAMP: RemedyKind = RemedyKind::Set("at_cycle damp", "settings.at_cycle", "damp");
 /// Search for a way out.
+pub(super) const RAMP: RemedyKind = RemedyKind::Gaps("ramp");
+pub(super) const ADJUST: RemedyKind = RemedyKind::Gaps("adjust");
+pub(super) const CUT_AT_JUMPS: RemedyKind =
+    RemedyKind::Jumps("history.jumps: cut (continues on the other branch)", "cut");
+pub(super) const MOVE_AT_JUMPS: RemedyKind = RemedyKind::Jumps(
+    "history.jumps: dynamic (a damped motion to the next equilibrium)",
+    "dynamic",
+);
 pub(super) const SEARCH: RemedyKind = RemedyKind::Set("search", "settings.search", "auto");
 
 /// What to type to apply a remedy.
@@ -226,26 +234,14 @@ impl Remedy {
                 let starts = state.next.increment == 1;
                 let keeps = model.settings.initial_gaps == InitialGaps::Keep;
                 let inside = |found: &StartGaps| !found.inside.is_empty();
-                let (word, label) = match gaps {
-                    InitialGaps::Adjust => ("adjust", "initial_gaps: adjust"),
-                    InitialGaps::Ramp => ("ramp", "initial_gaps: ramp"),
-                    InitialGaps::Keep => return None,
-                };
-                let how = restarted("settings.initial_gaps", word);
+                let label = format!("initial_gaps: {gaps}");
+                let how = restarted("settings.initial_gaps", gaps);
                 let overlaps = starts && keeps && start_gaps(model).iter().any(inside);
                 // If a surface has the wrong orientation, all nodes are inside.
-                (overlaps && turned(model).is_empty()).then(|| remedy(label, how, Vec::new()))
+                (overlaps && turned(model).is_empty()).then(|| remedy(&label, how, Vec::new()))
             }
-            RemedyKind::Jumps(jumps) => {
-                let (word, label) = match jumps {
-                    Jumps::Stop | Jumps::Accept => return None,
-                    Jumps::Cut => ("cut", "history.jumps: cut (continues on the other branch)"),
-                    Jumps::Dynamic => (
-                        "dynamic",
-                        "history.jumps: dynamic (a damped motion to the next equilibrium)",
-                    ),
-                };
-                let how = restarted("history.jumps", word);
+            RemedyKind::Jumps(label, jumps) => {
+                let how = restarted("history.jumps", jumps);
                 (model.jumps == Jumps::Stop).then(|| remedy(label, how, Vec::new()))
             }
             RemedyKind::Hysteresis => Some(remedy(

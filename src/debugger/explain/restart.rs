@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 use stickslip_core::plane::distance;
 use stickslip_core::{
-    Failure, Intervention, Model, Outcome, RunEnd, State, Status, Stepper, Until,
+    Failure, Intervention, JudgedLaw, Model, Outcome, RunEnd, State, Status, Stepper, Until,
 };
 use stickslip_scene::format::paths;
 use stickslip_scene::{Scene, Spec};
@@ -17,6 +17,32 @@ pub(super) const BUDGET: u64 = 4000;
 /// Distance up to which two nodes are at the same place, relative to the scene's length.
 const SAME: f64 = 1e-6;
 
+/// How a trial ended.
+#[derive(Debug, Clone, PartialEq)]
+pub enum TrialEnd {
+    /// The failed load was accepted.
+    Converged,
+    /// A state was accepted that violates this law, because of held modes or settings.
+    Against(JudgedLaw),
+    /// It failed.
+    Failed(Failure),
+    /// The budget is used up.
+    Budget,
+}
+
+impl TrialEnd {
+    /// The end of a run that stops itself with one; `None` if it was interrupted.
+    pub(super) fn from_run(end: RunEnd<TrialEnd>) -> Option<TrialEnd> {
+        Some(match end {
+            RunEnd::Stopped(end) => end,
+            RunEnd::Failed(failure) => TrialEnd::Failed(failure),
+            RunEnd::Finished => TrialEnd::Converged,
+            RunEnd::Spent => TrialEnd::Budget,
+            RunEnd::Interrupted => return None,
+        })
+    }
+}
+
 /// Result of the trial.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Restart {
@@ -26,8 +52,8 @@ pub struct Restart {
     pub majors: u64,
     /// Factorizations from the start.
     pub factorizations: u64,
-    /// The failure. `Some(None)`: the budget was used up; `None`: the load was reached.
-    pub failure: Option<Option<Failure>>,
+    /// How it ended.
+    pub end: TrialEnd,
 }
 
 /// The solver of a scene at its start, with the settings and friction of a failed state and then these changes, by path. `None`
@@ -126,22 +152,16 @@ pub fn restart(
         majors += u64::from(outcome.ends_major());
         let accepted = matches!(outcome, Outcome::Increment { .. });
         if accepted && target.is_passed(stepper.state()) {
-            ControlFlow::Break(())
+            ControlFlow::Break(TrialEnd::Converged)
         } else {
             ControlFlow::Continue(())
         }
     });
-    let failure = match end {
-        RunEnd::Stopped(()) | RunEnd::Finished => None,
-        RunEnd::Failed(failure) => Some(Some(failure)),
-        RunEnd::Spent => Some(None),
-        RunEnd::Interrupted => return None,
-    };
     Some(Restart {
         minors,
         majors,
         factorizations: stepper.work().factorizations,
-        failure,
+        end: TrialEnd::from_run(end)?,
     })
 }
 

@@ -322,13 +322,8 @@ fn since(model: &Model, state: &State, at_start: &Singular) -> String {
             ),
         };
     }
-    let rank = |mode: Mode| match mode {
-        Mode::Free => 0,
-        Mode::Sliding => 1,
-        Mode::Fixed => 2,
-    };
     let let_go: Vec<&str> = (0..model.contacts.len())
-        .filter(|&s| rank(state.nodes[s].mode) < rank(state.start.nodes[s].mode))
+        .filter(|&s| (state.nodes[s].mode as u8) < state.start.nodes[s].mode as u8)
         .map(|s| slave(model, s))
         .collect();
     if let_go.is_empty() {

@@ -9,36 +9,9 @@ use stickslip_scene::shortest;
 /// Maximum number of halvings of the increment.
 const HALVINGS: i32 = 6;
 
-/// Result of the search.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum StepSizeProbe {
-    /// An increment of this size has a consistent state, with the bodies linearised at its start.
-    Found(f64),
-    /// No increment down to this size has one.
-    None(f64),
-}
-
-impl StepSizeProbe {
-    /// Describes the result.
-    pub fn words(&self) -> String {
-        match self {
-            StepSizeProbe::Found(size) => {
-                let size = shortest(*size);
-                format!("a smaller increment of {size} has a consistent state")
-            }
-            StepSizeProbe::None(size) => {
-                let size = shortest(*size);
-                format!(
-                    "smaller increments have no consistent state either (halved down to {size})"
-                )
-            }
-        }
-    }
-}
-
-/// Searches for a consistent state in smaller increments from the start of a state's current increment. `None`
-/// if unknown. The stepper's final state is unspecified.
-pub fn smaller(stepper: &mut Stepper, state: &State) -> Option<StepSizeProbe> {
+/// Describes whether a smaller increment from the start of a state's current one has a consistent state, with the bodies linearised
+/// at its start. `None` if unknown. The stepper's final state is unspecified.
+pub fn smaller(stepper: &mut Stepper, state: &State) -> Option<String> {
     let size = (state.load_factor - state.start.load_factor).abs();
     let mut smallest = size;
     for halvings in 1..=HALVINGS {
@@ -48,8 +21,14 @@ pub fn smaller(stepper: &mut Stepper, state: &State) -> Option<StepSizeProbe> {
         let problem = stepper.interface_problem()?;
         let problem = problem.reduced(&undecided(&problem))?;
         if !census(&problem).ok()?.answers.is_empty() {
-            return Some(StepSizeProbe::Found(smallest));
+            let size = shortest(smallest);
+            return Some(format!(
+                "a smaller increment of {size} has a consistent state"
+            ));
         }
     }
-    Some(StepSizeProbe::None(smallest))
+    let size = shortest(smallest);
+    Some(format!(
+        "smaller increments have no consistent state either (halved down to {size})"
+    ))
 }

@@ -5,7 +5,7 @@ use super::remedy::{Remedy, RemedyInput};
 use stickslip_core::{RunFinding, counted};
 
 /// Outcome of a line of the list.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum TryOutcome {
     /// A trial reached the load.
     Works,
@@ -73,11 +73,9 @@ impl TryLine {
             .map(|seconds| format!(", about {seconds:.0} s"))
             .unwrap_or_default();
         TryLine {
-            label: remedy.label.clone(),
             typed: typed(&remedy.how),
-            outcome: TryOutcome::Untried,
             end: format!("not tried yet{about}"),
-            trial: None,
+            ..TryLine::by_hand(&remedy.label)
         }
     }
 
@@ -149,16 +147,11 @@ pub fn helps(trial: &RemedyTrial) -> bool {
 
 /// Best first: what works, in the order of the remedies; then what is untried; then what did not help.
 pub fn sort(lines: &mut [TryLine]) {
-    let place = |line: &TryLine| match line.outcome {
-        TryOutcome::Works => 0,
-        TryOutcome::Untried => 1,
-        TryOutcome::Fails => 2,
-    };
     lines.sort_by(|a, b| {
         let by_trial = match (&a.trial, &b.trial) {
             (Some(a), Some(b)) => compare(a, b),
             _ => std::cmp::Ordering::Equal,
         };
-        place(a).cmp(&place(b)).then(by_trial)
+        a.outcome.cmp(&b.outcome).then(by_trial)
     });
 }

@@ -125,18 +125,9 @@ impl Background {
 
     /// Starts the thread, idle.
     ///
-    /// `spec` is the scene as written by its author, which a finer mesh may be generated from. `lender` gives
-    /// access to the session's solver.
-    pub fn new(model: Arc<Model>, spec: Spec, lender: Lender) -> Background {
-        Background::start(model, Some(spec), Capabilities::all(), lender)
-    }
-
-    /// Starts the thread for an attached solver. Only that solver knows the deformable bodies.
-    pub fn attached(model: Arc<Model>, offers: Capabilities, lender: Lender) -> Background {
-        Background::start(model, None, offers, lender)
-    }
-
-    fn start(
+    /// `spec` is the scene as written by its author, from which a finer mesh may be generated; `None` for an attached solver.
+    /// `lender` gives access to the session's solver.
+    pub fn new(
         model: Arc<Model>,
         spec: Option<Spec>,
         offers: Capabilities,

@@ -90,10 +90,8 @@ impl Session {
         let start = Stepper::new(model.clone()).state().clone();
         let own = model.clone();
         let worker = Worker::new(move || Box::new(solver(own))).unattended();
-        let background = Background::new(model.clone(), scene.spec.clone(), worker.lender());
-        let connection = Connection::new(Capabilities::all(), None);
-        let timeline = Timeline::new(Tree::new(model, start, budget));
-        Session::from_parts(scene, connection, timeline, worker, background)
+        let tree = Tree::new(model, start, budget);
+        Session::from_parts(scene, tree, worker, Capabilities::all(), None)
     }
 
     /// A session with an attached solver, at the start of the scene that it reported.
@@ -101,29 +99,30 @@ impl Session {
         let (model, start) = (solver.model().clone(), solver.state().clone());
         let offers = solver.capabilities();
         let worker = Worker::new(move || solver);
-        let background = Background::attached(model.clone(), offers.clone(), worker.lender());
-        let connection = Connection::new(offers, Some(log));
-        let timeline = Timeline::new(Tree::new(model, start, Budget::default()));
-        Session::from_parts(scene, connection, timeline, worker, background)
+        let tree = Tree::new(model, start, Budget::default());
+        Session::from_parts(scene, tree, worker, offers, Some(log))
     }
 
     fn from_parts(
         scene: Scene,
-        connection: Connection,
-        timeline: Timeline,
+        tree: Tree,
         worker: Worker,
-        background: Background,
+        offers: Capabilities,
+        log: Option<Log>,
     ) -> Self {
+        // Only an attached solver knows its deformable bodies.
+        let spec = log.is_none().then(|| scene.spec.clone());
+        let model = tree.model().clone();
         Session {
             scene,
-            start_gaps: gaps::words(timeline.model()).join(", "),
-            connection,
-            timeline,
+            start_gaps: gaps::words(&model).join(", "),
+            background: Background::new(model, spec, offers.clone(), worker.lender()),
+            connection: Connection::new(offers, log),
+            timeline: Timeline::new(tree),
             worker,
             task: None,
             breakpoints: Breakpoints::default(),
             watches: Watches::default(),
-            background,
             journal: JournalWriter::default(),
             digests: StateDigests::default(),
             pending: None,

@@ -3,10 +3,10 @@
 
 use super::machine::Session;
 use crate::history::branches;
-use crate::recorded::calculix::{self, RecordedRun};
-use crate::recorded::exchange::{Line, OpenedExchange};
+use crate::recorded::calculix::RecordedRun;
+use crate::recorded::exchange::Line;
 use crate::recorded::story::in_common;
-use crate::{PointKind, Recording};
+use crate::{PointKind, Recording, Strip};
 use stickslip_scene::Scene;
 
 impl Session {
@@ -24,44 +24,35 @@ impl Session {
         }
     }
 
-    /// The session on a finished run.
+    /// The session on a finished run: every path is a branch that leaves the nearest earlier one. It starts at the end of the first
+    /// attempt of a CalculiX run that did not converge, otherwise at the start of the first path.
     pub fn recorded(recording: Recording) -> Session {
-        match recording {
-            Recording::Exchange(opened) => Session::from_exchange(*opened),
-            Recording::Calculix(opened) => Session::from_calculix(*opened),
-        }
-    }
-
-    /// The session on a CalculiX run: at the end of the first attempt that did not converge, otherwise at the
-    /// start.
-    fn from_calculix(opened: calculix::OpenedRun) -> Session {
-        let solver = RecordedRun::new(&opened);
-        let iterations = opened.run.files.iterations.len();
-        let mut session = Session::attached(opened.scene, Box::new(solver), opened.log);
-        session.take_steps(vec![None; iterations]);
-        session.wait();
-        let first = session
-            .timeline
-            .strips()
-            .iter()
-            .position(|strip| strip.kind.is_failure() || strip.kind == PointKind::Cut);
-        session.rest_at(first.unwrap_or(0));
-        session
-    }
-
-    /// The session at the start of the first path; every other path is a branch that leaves the nearest earlier
-    /// one.
-    fn from_exchange(opened: OpenedExchange) -> Session {
-        let mut session = Session::attached(opened.scene, Box::new(opened.past), opened.log);
+        let (mut session, lines) = match recording {
+            Recording::Exchange(opened) => {
+                let solver = Box::new(opened.past);
+                let session = Session::attached(opened.scene, solver, opened.log);
+                (session, opened.lines)
+            }
+            Recording::Calculix(opened) => {
+                let solver = Box::new(RecordedRun::new(&opened));
+                let iterations = opened.run.files.iterations.len();
+                let session = Session::attached(opened.scene, solver, opened.log);
+                (session, vec![vec![None; iterations]])
+            }
+        };
         let mut done: Vec<(usize, Line)> = Vec::new();
-        for line in opened.lines {
+        for line in lines {
             session.add_path(&line, &done);
             done.push((session.timeline.place().0, line));
         }
         if done.len() > 1 {
             session.timeline.switch(0);
         }
-        session.rest_at(0);
+        let mut strips = session.timeline.strips().iter();
+        let is_end = |strip: &Strip| strip.kind.is_failure() || strip.kind == PointKind::Cut;
+        let failed = strips.position(is_end);
+        let failed = failed.filter(|_| session.model().finished.is_some());
+        session.rest_at(failed.unwrap_or(0));
         session
     }
 

@@ -3,7 +3,7 @@
 use super::super::limits;
 use crate::format::error::{Fault, at, bail, fault};
 use crate::format::spec::History;
-use stickslip_core::{Body, BodyKind, Control, Settings, Touch, counted};
+use stickslip_core::{Body, Control, Settings, Touch, counted};
 
 /// Rejects an empty or endless path.
 pub(super) fn history(history: &History) -> Result<(), Fault> {
@@ -153,9 +153,8 @@ pub(super) fn settings(settings: &Settings) -> Result<(), Fault> {
 
 /// The settings for the solver, with `touch: auto` resolved for these bodies.
 pub(super) fn resolved(settings: &Settings, bodies: &[Body]) -> Settings {
-    let is_mesh = |body: &Body| !matches!(body.kind, BodyKind::Linear(_));
     let touch = match settings.touch {
-        Touch::Auto if bodies.iter().any(is_mesh) => Touch::Ratio,
+        Touch::Auto if !bodies.iter().all(Body::is_linear) => Touch::Ratio,
         Touch::Auto => Touch::Start,
         wanted => wanted,
     };

@@ -1,7 +1,7 @@
 //! The conditions that recoveries check on a failed increment.
 
 use super::fallback::{DEEPER, Fallback};
-use crate::model::{BodyKind, Factor, Jumps, SearchMode};
+use crate::model::{Body, Factor, Jumps, SearchMode};
 use crate::plane::max_abs;
 use crate::strategy;
 use crate::{Failure, Mode, Model, Singular, Source, State};
@@ -141,10 +141,7 @@ impl FailedIncrement<'_> {
 
     /// Whether all bodies are given as matrices.
     pub fn is_given(&self) -> bool {
-        self.model
-            .bodies
-            .iter()
-            .all(|body| matches!(body.kind, BodyKind::Linear(_)))
+        self.model.bodies.iter().all(Body::is_linear)
     }
 
     /// Whether the problem is the same at any part of the load: matrices without gaps, cohesion or prescribed motions, loaded in
@@ -152,10 +149,7 @@ impl FailedIncrement<'_> {
     pub fn scales(&self) -> bool {
         let (model, start) = (self.model, &self.state.start);
         let matrices = !model.bodies.is_empty()
-            && model
-                .bodies
-                .iter()
-                .all(|body| matches!(body.kind, BodyKind::Linear(_)))
+            && self.is_given()
             && model.surfaces.iter().all(|surface| surface.endless)
             && model.prescribed.is_empty();
         let proportional = model

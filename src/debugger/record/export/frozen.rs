@@ -131,6 +131,17 @@ pub fn writable(problem: &InterfaceProblem) -> Vec<usize> {
         .collect()
 }
 
+/// The nodes that can be written, and the problem without the others.
+fn writable_part(problem: &InterfaceProblem) -> Result<(Vec<usize>, InterfaceProblem), Refusal> {
+    let here = writable(problem);
+    if here.is_empty() {
+        return Err(Refusal::new(NO_INTERFACE));
+    }
+    let reduced = problem.reduced(&here);
+    let reduced = reduced.ok_or_else(|| Refusal::new(NOT_SOLVABLE))?;
+    Ok((here, reduced))
+}
+
 /// The file of a whole frozen problem in its current state, without the nodes that cannot be written
 /// ([`writable`]): these do not interact with the others.
 ///
@@ -140,10 +151,7 @@ pub fn whole(
     origin: &Origin,
     problem: &InterfaceProblem,
 ) -> Result<String, Refusal> {
-    let here = writable(problem);
-    if here.is_empty() {
-        return Err(Refusal::new(NO_INTERFACE));
-    }
+    let (here, reduced) = writable_part(problem)?;
     let mut head = vec![
         "The frozen interface problem of a major iteration: the bodies reduced to their contact nodes.".to_owned(),
         origin.words(),
@@ -158,15 +166,12 @@ pub fn whole(
             "Left out (past the ends of all surfaces, or fixed together with the surface): {gone}."
         ));
     }
-    let problem = problem
-        .reduced(&here)
-        .ok_or_else(|| Refusal::new(NOT_SOLVABLE))?;
     let title = format!(
         "Interface of {}: {}",
         origin.scene,
         names::position(origin.at)
     );
-    text(model, &problem, title, head)
+    text(model, &reduced, title, head)
 }
 
 /// The file: with the stiffness, if that exists and its steps match the problem, otherwise with the compliance.
@@ -199,7 +204,11 @@ fn text(
     let mut refused = Vec::new();
     for (form, made) in [
         ("stiffness", stiffness(problem)),
-        ("compliance", compliance(problem)),
+        (
+            "compliance",
+            compliance(problem)
+                .map(|(w, free)| (Matrix::Compliance(w), free, vec![[0.0; 2]; count])),
+        ),
     ] {
         let Some((matrix, free, loads)) = made else {
             let why = if form == "stiffness" {
@@ -273,24 +282,11 @@ pub struct TotalForceProblem {
 ///
 /// # Errors If some motion is unrestrained, or a support carries the contact force of a node.
 pub fn total(model: &Model, problem: &InterfaceProblem) -> Result<TotalForceProblem, Refusal> {
-    let here = writable(problem);
-    if here.is_empty() {
-        return Err(Refusal::new(NO_INTERFACE));
-    }
-    let problem = problem
-        .reduced(&here)
-        .ok_or_else(|| Refusal::new(NOT_SOLVABLE))?;
+    let (_, problem) = writable_part(problem)?;
     unsupported(model, &problem)?;
-    let none = || {
-        refusal!(
-            "the problem cannot be written as a matrix: {}",
-            "some motion is unrestrained"
-        )
-    };
-    let (matrix, mut q, _) = compliance(&problem).ok_or_else(none)?;
-    let Matrix::Compliance(w) = matrix else {
-        return Err(none());
-    };
+    let (w, mut q) = compliance(&problem).ok_or_else(|| {
+        refusal!("the problem cannot be written as a matrix: some motion is unrestrained")
+    })?;
     for (pair, node) in q.chunks_exact_mut(2).zip(&problem.nodes) {
         pair[0] += node.kinematics.map_or(0.0, |k| k.gap);
         // Slip is the motion of the master relative to the slave; u is that of the slave.
@@ -415,7 +411,7 @@ fn stiffness(problem: &InterfaceProblem) -> Option<Parts> {
 }
 
 /// W and free displacements, without loads; `None` if something can move freely.
-fn compliance(problem: &InterfaceProblem) -> Option<Parts> {
+fn compliance(problem: &InterfaceProblem) -> Option<(Vec<Vec<f64>>, Vec<f64>)> {
     let bodies = problem.relation.compliance()?;
     if max_abs(&bodies.w) * problem.spring > SINGULAR {
         return None;
@@ -437,11 +433,7 @@ fn compliance(problem: &InterfaceProblem) -> Option<Parts> {
             still - answer - p
         });
     let free = free.collect();
-    Some((
-        Matrix::Compliance(w),
-        free,
-        vec![[0.0; 2]; problem.nodes.len()],
-    ))
+    Some((w, free))
 }
 
 fn rows(n: usize, entry: impl Fn(usize, usize) -> f64) -> Vec<Vec<f64>> {

@@ -280,11 +280,7 @@ fn contacts(model: &Model, state: &State, event: Option<&Event>, grid: &mut Grid
             continue;
         };
         let node = contact.node;
-        modes[node] = match mode {
-            Mode::Free => 0,
-            Mode::Sliding => 1,
-            Mode::Fixed => 2,
-        };
+        modes[node] = mode as i32;
         force[VECTOR.len() * node..][..3].copy_from_slice(&vector);
         for (list, value) in numbers.iter_mut().zip(values) {
             list[node] = value;

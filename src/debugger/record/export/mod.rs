@@ -88,52 +88,50 @@ impl ExportKind {
     }
 }
 
-const fn shown_kind(
+const fn kind_of(
     extension: &'static str,
     what: &'static str,
+    may_be_frozen: bool,
     made_of: ExportSource,
 ) -> ExportKind {
     ExportKind {
         extension,
         what,
-        may_be_frozen: false,
+        may_be_frozen,
         made_of,
-    }
-}
-
-const fn frozen_kind(
-    extension: &'static str,
-    what: &'static str,
-    made_of: ExportSource,
-) -> ExportKind {
-    ExportKind {
-        may_be_frozen: true,
-        ..shown_kind(extension, what, made_of)
     }
 }
 
 /// All kinds of files.
 pub const KINDS: &[ExportKind] = &[
-    shown_kind("svg", "a picture of the state", State(picture::svg)),
-    shown_kind("png", "the picture as a bitmap", State(picture::png)),
-    frozen_kind(
+    kind_of("svg", "a picture of the state", false, State(picture::svg)),
+    kind_of("png", "the picture as a bitmap", false, State(picture::png)),
+    kind_of(
         "ron",
         "the scene, or its frozen interface problem",
+        true,
         State(written::ron),
     ),
-    frozen_kind(
+    kind_of(
         "dat",
         "the frozen interface problem for Siconos",
+        true,
         State(written::dat),
     ),
-    frozen_kind(
+    kind_of(
         "mtx",
         "the frozen problem as three Matrix Market files",
+        true,
         Parts(written::mtx),
     ),
-    frozen_kind("h5", "the frozen problem for fclib", State(written::h5)),
-    shown_kind("vtu", "the state for ParaView", State(grid::vtu)),
-    shown_kind("cast", "a journal as a film for asciinema", Journal),
+    kind_of(
+        "h5",
+        "the frozen problem for fclib",
+        true,
+        State(written::h5),
+    ),
+    kind_of("vtu", "the state for ParaView", false, State(grid::vtu)),
+    kind_of("cast", "a journal as a film for asciinema", false, Journal),
 ];
 
 /// The kind of a file, by its extension.

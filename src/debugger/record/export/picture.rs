@@ -10,13 +10,13 @@ use super::timeline::{self, chosen, marker};
 use super::window::{FORCE, Window};
 use crate::RoundOff;
 use crate::explain::conditions::{Given, conditions};
+use crate::explain::model_facts::{diagonal, solid_elements};
 use crate::explain::names;
 use crate::explain::outline::{self, Bounds, Point, Projection, curve, extent};
 use crate::refusal::Refusal;
-use stickslip_core::model::SolidElement;
 use stickslip_core::plane::distance;
 use stickslip_core::{
-    Body, ContactRecord, Mode, Model, Outcome, Status, Stepper, SurfaceElement, counted,
+    ContactRecord, Mode, Model, Outcome, Status, Stepper, SurfaceElement, counted,
 };
 use stickslip_scene::{shortest, sig4};
 use stickslip_study::drawn::PlotError;
@@ -285,17 +285,14 @@ impl ShapeDrawing<'_> {
                 .collect();
             self.line(&points, &before);
         }
-        for solid in model.bodies.iter().filter_map(Body::solid) {
-            for SolidElement { kind, nodes, .. } in &solid.elements {
-                let across = kind.faces().len() / 2;
-                let (a, b) = ((self.now)(nodes[0]), (self.now)(nodes[across]));
-                if distance(a, b) * self.window.scale < ELEMENT {
-                    continue;
-                }
-                for face in kind.faces_of(nodes) {
-                    let points: Vec<Point> = face.iter().map(|&node| (self.now)(node)).collect();
-                    self.stroke(&points, &pen(0.7, PALE));
-                }
+        for element in model.bodies.iter().flat_map(solid_elements) {
+            let [a, b] = diagonal(element).map(self.now);
+            if distance(a, b) * self.window.scale < ELEMENT {
+                continue;
+            }
+            for face in element.kind.faces_of(&element.nodes) {
+                let points: Vec<Point> = face.iter().map(|&node| (self.now)(node)).collect();
+                self.stroke(&points, &pen(0.7, PALE));
             }
         }
         for element in lines() {

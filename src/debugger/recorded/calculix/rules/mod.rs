@@ -30,7 +30,7 @@ enum Rule {
     /// The deck, before or after a run, given that its surfaces face each other.
     Deck(fn(&DeckShape) -> Vec<RunFinding>),
     /// The record of a run, with its deck if there is one.
-    Record(fn(&CalculixRun, Option<&DeckShape>) -> Vec<RunFinding>),
+    Record(fn(&CalculixRun, Option<&DeckShape>) -> Option<RunFinding>),
 }
 
 use Rule::{Deck, Mesh, Record};
@@ -75,7 +75,7 @@ pub fn examine(deck: Option<&DeckShape>, run: Option<&CalculixRun>) -> Vec<RunFi
         let findings = rules.iter().flat_map(|rule| match (rule, deck, run) {
             (Mesh(rule), Some(deck), _) => rule(deck),
             (Deck(rule), Some(deck), _) if !is_complete && !is_reversed => rule(deck),
-            (Record(rule), _, Some(run)) if !is_complete => rule(run, deck),
+            (Record(rule), _, Some(run)) if !is_complete => rule(run, deck).into_iter().collect(),
             _ => Vec::new(),
         });
         findings.collect()

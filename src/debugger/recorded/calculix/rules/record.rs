@@ -21,22 +21,18 @@ const NAMED: usize = 3;
 const CAPPED: f64 = 99.9;
 
 /// A run that ended because the step had no increments left.
-pub fn increments_used(run: &CalculixRun, shape: Option<&DeckShape>) -> Vec<RunFinding> {
-    let (Some(last), Some(shape)) = (run.files.attempts.last(), shape) else {
-        return Vec::new();
-    };
-    let step = (last.step as usize).checked_sub(1);
-    let Some(step) = step.and_then(|k| shape.deck.steps.get(k)) else {
-        return Vec::new();
-    };
+pub fn increments_used(run: &CalculixRun, shape: Option<&DeckShape>) -> Option<RunFinding> {
+    let last = run.files.attempts.last()?;
+    let step = (last.step as usize).checked_sub(1)?;
+    let step = shape?.deck.steps.get(step)?;
     let most = step.increments.unwrap_or(INCREMENTS);
     let reached = last.row.map_or(f64::INFINITY, |row| row.step_time);
     let left = step.time.period - reached;
     if last.end != End::Converged || u64::from(last.increment) < most || left <= 1e-6 {
-        return Vec::new();
+        return None;
     }
     let nlgeom = if step.nlgeom { ", NLGEOM" } else { "" };
-    vec![RunFinding {
+    Some(RunFinding {
         rule: "increments used up",
         cause: format!(
             "step {} stopped at its time {} of {} because INC allows {most} increments; the last one converged",
@@ -46,7 +42,7 @@ pub fn increments_used(run: &CalculixRun, shape: Option<&DeckShape>) -> Vec<RunF
         ),
         cure: format!("more increments (line {})", step.place.line),
         lines: format!("*STEP{nlgeom}, INC={}", 10 * most),
-    }]
+    })
 }
 
 /// A run without any contact element. If it reached its end, that is all there is to report.
@@ -124,9 +120,9 @@ pub fn ended_converged(run: &CalculixRun) -> bool {
 }
 
 /// Contacts that open and close in turn, in the last attempt or else in an earlier one: who, where, how often, and against whom.
-pub fn chatter(run: &CalculixRun, shape: Option<&DeckShape>) -> Vec<RunFinding> {
+pub fn chatter(run: &CalculixRun, shape: Option<&DeckShape>) -> Option<RunFinding> {
     if ended_converged(run) {
-        return Vec::new();
+        return None;
     }
     let attempts = run.files.attempts.len();
     let in_last = |found: &Switching| match found.attempts.last() {
@@ -148,9 +144,7 @@ pub fn chatter(run: &CalculixRun, shape: Option<&DeckShape>) -> Vec<RunFinding> 
         );
     }
     let counts = counted.iter().map(|(_, counts)| *counts);
-    let Some((attempt, count)) = counts.max_by_key(|(_, count)| *count) else {
-        return Vec::new();
-    };
+    let (attempt, count) = counts.max_by_key(|(_, count)| *count)?;
     let slaves = || counted.iter().map(|(slave, _)| *slave);
     let name = |slave: usize| match shape.and_then(|shape| place(run, shape, slave)) {
         Some(at) => format!("{} {at}", run.slave_with_corners(slave)),
@@ -183,7 +177,7 @@ pub fn chatter(run: &CalculixRun, shape: Option<&DeckShape>) -> Vec<RunFinding> 
             .into(),
         String::new(),
     ));
-    vec![RunFinding {
+    Some(RunFinding {
         rule: "chattering",
         cause: format!(
             "{} of {} contacts switch {CHATTER} times or more in {when}, up to {count} times in {}: {}; against {masters}",
@@ -194,7 +188,7 @@ pub fn chatter(run: &CalculixRun, shape: Option<&DeckShape>) -> Vec<RunFinding> 
         ),
         cure,
         lines,
-    }]
+    })
 }
 
 /// The node of a slave, and its pair; a face has its first corner.
@@ -249,9 +243,9 @@ fn masters(run: &CalculixRun, attempt: usize, slaves: &BTreeSet<usize>) -> Strin
 }
 
 /// Attempts whose correction stays at its cap of 100 % while the residual grows.
-pub fn capped_correction(run: &CalculixRun, shape: Option<&DeckShape>) -> Vec<RunFinding> {
+pub fn capped_correction(run: &CalculixRun, shape: Option<&DeckShape>) -> Option<RunFinding> {
     if ended_converged(run) {
-        return Vec::new();
+        return None;
     }
     let capped = run
         .files
@@ -271,9 +265,7 @@ pub fn capped_correction(run: &CalculixRun, shape: Option<&DeckShape>) -> Vec<Ru
             let grows = attempt.end == End::NotConverged && to > from;
             grows.then_some((k, norms.len(), from, to))
         });
-    let Some((attempt, count, from, to)) = capped.max_by_key(|capped| capped.1) else {
-        return Vec::new();
-    };
+    let (attempt, count, from, to) = capped.max_by_key(|capped| capped.1)?;
     let number = run.files.attempts[attempt].step as usize;
     let step = shape.zip(number.checked_sub(1));
     let (cure, lines) = match step.and_then(|(shape, k)| shape.deck.steps.get(k)) {
@@ -293,7 +285,7 @@ pub fn capped_correction(run: &CalculixRun, shape: Option<&DeckShape>) -> Vec<Ru
             String::new(),
         ),
     };
-    vec![RunFinding {
+    Some(RunFinding {
         rule: "capped correction",
         cause: format!(
             "the correction of attempt {} stays at 100 % for {count} iterations while the residual grows from {} % to {} %: \
@@ -304,5 +296,5 @@ pub fn capped_correction(run: &CalculixRun, shape: Option<&DeckShape>) -> Vec<Ru
         ),
         cure,
         lines,
-    }]
+    })
 }
