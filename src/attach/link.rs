@@ -124,7 +124,7 @@ impl Link {
                 .stdin(standard_input)
                 .stdout(Stdio::piped())
                 .stderr(Stdio::piped());
-            let mut child = process::set_group(&mut command).spawn().map_err(failed)?;
+            let mut child = process::spawn(&mut command).map_err(failed)?;
             link.input = own.or_else(|| child.stdin.take().map(Input::Pipe));
             streams = [
                 child.stdout.take().map(|stream| Box::new(stream) as _),

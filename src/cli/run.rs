@@ -140,7 +140,7 @@ impl<'a> Run<'a> {
         let stepper = solver.stepper().filter(|_| watched);
         let touch = stepper.map(|stepper| TouchWatch::new(stepper.state()));
         let stepper = solver.stepper();
-        let unforced = stepper.map(|stepper| UnforcedWatch::new(model, &stepper.state().start.u));
+        let unforced = stepper.map(|stepper| UnforcedWatch::new(model, &stepper.state().start));
         let most = args.subject.solver.is_named().then_some(args.most);
         let mut tally = Tally::new(scene, args.quiet, args.stability, most);
         tally.touch = touch;
@@ -187,7 +187,7 @@ impl<'a> Run<'a> {
 
     /// Prints the summary, and how the run ended.
     fn notify(&mut self, end: Ending, args: &Args, interrupt: &Interrupt) -> RunResult {
-        self.tally.sum_up();
+        self.tally.sum_up(self.solver.state());
         if !args.quiet {
             self.report_summary(args.outputs.csv.is_none());
             if self.tally.scene.model.monitors.is_empty() {

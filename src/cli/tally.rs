@@ -7,7 +7,7 @@ use super::run_outputs::{RunOutputs, first_closed, send};
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 use stickslip_core::{
-    ContactRecord, Event, Fallback, MotionEvent, Norms, Outcome, Solver, Stability, counted,
+    ContactRecord, Event, Fallback, MotionEvent, Norms, Outcome, Solver, Stability, State, counted,
 };
 use stickslip_debugger::Strip;
 use stickslip_debugger::explain::accuracy;
@@ -20,7 +20,6 @@ use stickslip_debugger::explain::unforced::UnforcedWatch;
 use stickslip_debugger::history::rounds::{self, CycleWatch};
 use stickslip_debugger::record::table;
 use stickslip_scene::number::UNREPORTED;
-use stickslip_scene::overlaps;
 use stickslip_scene::{Scene, aligned, first_of, joined, shortest, sig6};
 
 /// Warnings that are printed individually; others are only counted.
@@ -100,8 +99,8 @@ pub struct Tally<'a> {
     pub without_friction: Option<(String, f64)>,
     /// What kept the run going, each with how often and its first and last increment.
     recoveries: BTreeMap<&'static str, (u32, RangeInclusive<u32>)>,
-    /// Bodies without enough contact to be held, with the first and last increment in which they were.
-    loose: BTreeMap<String, RangeInclusive<u32>>,
+    /// Bodies without enough contact to be held, in the order of the scene, with the first and last increment in which they were.
+    loose: BTreeMap<(usize, String), RangeInclusive<u32>>,
     /// Norms of the accepted increment with the largest round-off in its forces.
     noisiest: Norms,
     /// Largest relative error of an accepted increment that is within its limit.
@@ -238,14 +237,11 @@ impl<'a> Tally<'a> {
             stretches.add(event.load_factor, stability);
         }
         let model = &self.scene.model;
-        let u = &solver.state().start.u;
+        let last = &solver.state().start;
         if let Some(unforced) = &mut self.unforced {
-            let at = (event.position.increment, event.load_factor);
-            if let Outcome::Increment { after, .. } = &event.outcome {
-                unforced.see(model, at, &event.nodes, after, u);
-            }
+            unforced.see(model, event, last);
         }
-        let row = || table::csv_row(model, event, minors, monitors, stability, u);
+        let row = || table::csv_row(model, event, minors, monitors, stability, &last.u);
         let sent = send(&mut outputs.csv, row)?;
         self.accepted += 1;
         self.majors += u64::from(event.position.major);
@@ -309,7 +305,10 @@ impl<'a> Tally<'a> {
             *seen = (seen.0 + 1, extended(&seen.1));
         }
         for body in report::loose_bodies(&event.outcome) {
-            let seen = self.loose.entry(body.to_owned()).or_insert(now..=now);
+            let bodies = &self.scene.model.bodies;
+            let number = bodies.iter().position(|own| own.name == body);
+            let key = (number.unwrap_or(bodies.len()), body.to_owned());
+            let seen = self.loose.entry(key).or_insert(now..=now);
             *seen = extended(seen);
         }
         if self.count_notes() <= MOST_WARNINGS {
@@ -380,8 +379,8 @@ impl<'a> Tally<'a> {
         }
     }
 
-    /// Adds the warnings and notes that summarise the run.
-    pub fn sum_up(&mut self) {
+    /// Adds the warnings and notes that summarise the run; `state` is its last state.
+    pub fn sum_up(&mut self, state: &State) {
         if self.doubtful > MOST_WARNINGS {
             self.messages.warn(format!(
                 "{} increments in total were accepted with warnings",
@@ -392,16 +391,9 @@ impl<'a> Tally<'a> {
             self.messages.warn(left);
         }
         if let Some(unforced) = &self.unforced {
-            let model = &self.scene.model;
-            let soft = model.contacts.iter().zip(&self.slaves);
-            let soft = soft
-                .filter(|(contact, _)| !contact.bond.is_hard())
-                .map(|(_, found)| -found.gap)
-                .fold(0.0, f64::max);
-            let mut all = unforced.found(model);
-            all.extend(overlaps::at_end(model, unforced.places(), soft));
-            for found in all {
-                self.messages.warn(found);
+            let log = unforced.log();
+            for warning in log.warnings(&self.scene.model, &state.start) {
+                self.messages.warn(warning);
             }
         }
         let tolerance = self.scene.model.settings.tolerance;
@@ -417,7 +409,7 @@ impl<'a> Tally<'a> {
         };
         // Bodies that were loose in the same increments share a line.
         let mut alike: Vec<(&RangeInclusive<u32>, Vec<&str>)> = Vec::new();
-        for (body, seen) in &self.loose {
+        for ((_, body), seen) in &self.loose {
             match alike.iter_mut().find(|(other, _)| *other == seen) {
                 Some((_, bodies)) => bodies.push(body),
                 None => alike.push((seen, vec![body])),

@@ -2,12 +2,47 @@
 
 use rustix::io::ioctl_fionbio;
 use rustix::process::{Pid, Signal, WaitId, WaitIdOptions, kill_process_group, waitid};
+use signal_hook::consts::{SIGINT, SIGQUIT, SIGTERM};
+use signal_hook::{SigId, flag, low_level};
+use std::fs;
 use std::io;
 use std::os::unix::process::CommandExt;
 use std::process::{Child, ChildStdin, Command, Stdio};
+use std::sync::Arc;
+
+/// Signals that end a solver, and that it gets with their default actions.
+const ENDING: [i32; 3] = [SIGINT, SIGQUIT, SIGTERM];
+
+/// Starts a process in a separate group. The signals that end it have their default actions, also if this program was started with
+/// them ignored, as shells do with background jobs; SIGHUP stays ignored, as `nohup` requests.
+///
+/// # Errors
+/// From the system.
+pub fn spawn(command: &mut Command) -> io::Result<Child> {
+    // A process starts with default actions for signals that its parent handles. After the handler is removed, the parent ignores
+    // the signal again.
+    let ignored = ignored_signals();
+    let is_ignored = |signal: &i32| ignored >> (signal - 1) & 1 == 1;
+    let handled = ENDING.into_iter().filter(is_ignored);
+    let handled = handled.filter_map(|signal| flag::register(signal, Arc::default()).ok());
+    let handled: Vec<SigId> = handled.collect();
+    let child = set_group(command).spawn();
+    for id in handled {
+        low_level::unregister(id);
+    }
+    child
+}
+
+/// The signals that this program ignores, one bit each; none where the system does not report them.
+fn ignored_signals() -> u64 {
+    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let bits = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    bits.and_then(|bits| u64::from_str_radix(bits.trim(), 16).ok())
+        .unwrap_or_default()
+}
 
 /// Gives the process a group, so that a Ctrl-C in the terminal reaches only this program.
-pub fn set_group(command: &mut Command) -> &mut Command {
+fn set_group(command: &mut Command) -> &mut Command {
     command.process_group(0)
 }
 

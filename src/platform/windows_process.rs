@@ -7,9 +7,12 @@ use std::process::{Child, ChildStdin, Command, Stdio};
 /// `CREATE_NEW_PROCESS_GROUP` of the Windows API.
 const NEW_GROUP: u32 = 0x200;
 
-/// Gives the process a group, so that a Ctrl-C in the console reaches only this program.
-pub fn set_group(command: &mut Command) -> &mut Command {
-    command.creation_flags(NEW_GROUP)
+/// Starts a process in a separate group, so that a Ctrl-C in the console reaches only this program.
+///
+/// # Errors
+/// From the system.
+pub fn spawn(command: &mut Command) -> io::Result<Child> {
+    command.creation_flags(NEW_GROUP).spawn()
 }
 
 /// Does nothing: pipes between processes always block. A solver that does not read its input delays this program.

@@ -6,14 +6,17 @@
 use crate::number::sig4;
 use std::cell::LazyCell;
 use std::collections::HashSet;
+use stickslip_core::contact::state::ContactState;
 use stickslip_core::plane::{depth_inside, range};
-use stickslip_core::{Body, Model};
+use stickslip_core::{Body, IncrementStart, Model};
 
 /// Depths below this part of the scene's length are none.
 const NONE: f64 = 3e-5;
 /// Depths that are reported after a run: those by which an overlap has grown, relative to the diagonal of the smaller body. Between
 /// the slave nodes of a coarse mesh a master's nodes are a little inside.
 const DEEP: f64 = 0.01;
+/// The same for a thin body, relative to its thickness, its area per diagonal: no node is deeper inside than half of that.
+const THIN: f64 = 0.25;
 
 /// A node of a solid inside another one.
 struct Overlap {
@@ -25,8 +28,8 @@ struct Overlap {
     first: usize,
     /// Distance of the deepest node from the outline (length).
     depth: f64,
-    /// Diagonal of the smaller body (length).
-    size: f64,
+    /// Depth up to which it is not reported after a run (length).
+    most: f64,
     /// How far the curved sides of both bodies are from straight ones between nodes (length).
     bend: f64,
 }
@@ -48,19 +51,21 @@ pub(crate) fn at_start(model: &Model) -> Vec<String> {
         .collect()
 }
 
-/// Describes pairs of solids that overlap after a run, at these positions: deeper than at the start, and deeper than `soft` (length),
-/// the largest penetration that the contact laws allow.
-pub fn at_end(model: &Model, places: &[[f64; 2]], soft: f64) -> Vec<String> {
+/// Describes pairs of solids that overlap in the last accepted state of a run: deeper than at the start, and deeper than the contact
+/// laws between them allow.
+pub fn at_end(model: &Model, last: &IncrementStart) -> Vec<String> {
     let start: Vec<[f64; 2]> = model.nodes.iter().map(|node| node.at).collect();
     let near = NONE * model.length;
     let before = overlaps(model, &start, near);
     let mut all = Vec::new();
     let mut pairs = HashSet::new();
-    for found in overlaps(model, places, near) {
+    for found in overlaps(model, &model.places(&last.u), near) {
         let was = before.iter().filter(|was| was.bodies == found.bodies);
         let was = was.map(|was| was.depth).fold(0.0, f64::max);
         let [a, b] = found.bodies;
-        if found.depth - was - soft - found.bend <= DEEP * found.size
+        let grown = found.depth - was - found.bend;
+        if grown <= found.most
+            || grown - allowed(model, &last.nodes, found.bodies) <= found.most
             || !pairs.insert([a.min(b), a.max(b)])
         {
             continue;
@@ -75,6 +80,29 @@ pub fn at_end(model: &Model, places: &[[f64; 2]], soft: f64) -> Vec<String> {
         ));
     }
     all
+}
+
+/// The largest penetration that the springs of contacts between two bodies have (length).
+fn allowed(model: &Model, nodes: &[ContactState], bodies: [usize; 2]) -> f64 {
+    let nodes_of = |body: usize| model.bodies[body].nodes.iter().copied();
+    let [a, b] = bodies.map(|body| nodes_of(body).collect::<HashSet<usize>>());
+    let springs = model.contacts.iter().zip(nodes).filter(|(contact, _)| {
+        let mut slaves = contact.carriers().map(|(node, _)| node);
+        let mut masters = contact
+            .surfaces
+            .iter()
+            .flat_map(|&surface| &model.surfaces[surface].elements);
+        let mut is_on = |master: &HashSet<usize>| {
+            masters.any(|side| side.iter().all(|node| master.contains(node)))
+        };
+        contact.bond.give()[0] > 0.0
+            && slaves.next().is_some_and(|node| {
+                a.contains(&node) && is_on(&b) || b.contains(&node) && is_on(&a)
+            })
+    });
+    springs
+        .map(|(contact, node)| contact.bond.give()[0] * node.f_n)
+        .fold(0.0, f64::max)
 }
 
 /// Pairs of solids where a node of one lies deeper than `near` inside the outline of the other, each with its deepest node.
@@ -104,7 +132,7 @@ fn overlaps(model: &Model, places: &[[f64; 2]], near: f64) -> Vec<Overlap> {
                 node,
                 first,
                 depth,
-                size: outline.diagonal().min(others.diagonal()),
+                most: outline.tolerance().min(others.tolerance()),
                 bend: outline.bend + others.bend,
             }));
         }
@@ -145,8 +173,12 @@ impl Outline {
         }
     }
 
-    fn diagonal(&self) -> f64 {
-        (self.high[0] - self.low[0]).hypot(self.high[1] - self.low[1])
+    /// The depth up to which an overlap with this solid is not reported after a run.
+    fn tolerance(&self) -> f64 {
+        let diagonal = (self.high[0] - self.low[0]).hypot(self.high[1] - self.low[1]);
+        let twice_areas = self.sides.iter().map(|[a, b]| a[0] * b[1] - b[0] * a[1]);
+        let thickness = 0.5 * twice_areas.sum::<f64>().abs() / diagonal;
+        (DEEP * diagonal).min(THIN * thickness)
     }
 
     /// Whether the bounding boxes have a point in common.

@@ -62,6 +62,8 @@ struct Reader {
     recognise: fn(&Start) -> bool,
     /// Reads it as a scene. `None` if it is none, or is read as RON.
     read: Option<ReadScene>,
+    /// Extensions of such files, if no other kind has them, and what a message calls the format.
+    extensions: (&'static [&'static str], &'static str),
 }
 
 type ReadScene = fn(&Source) -> Result<Scene, SceneError>;
@@ -78,6 +80,7 @@ const fn file(
         command,
         recognise,
         read: None,
+        extensions: (&[], ""),
     }
 }
 
@@ -89,25 +92,61 @@ const fn scene(recognise: fn(&Start) -> bool, read: Option<ReadScene>) -> Reader
     }
 }
 
+impl Reader {
+    /// The reader of files with these extensions, whatever they begin with.
+    const fn named(self, extensions: &'static [&'static str], format: &'static str) -> Reader {
+        Reader {
+            extensions: (extensions, format),
+            ..self
+        }
+    }
+
+    /// The message for a file that has the name of its kind, but not its beginning.
+    fn damage(&self, name: &str) -> String {
+        let (format, own) = (self.extensions.1, self.kind.reader(name));
+        let own = own
+            .map(|own| format!("; `{own}` reads one"))
+            .unwrap_or_default();
+        format!("this is named like {format}, but does not begin like one{own}")
+    }
+
+    /// The reader of files with the extension of this one, if there is only one.
+    fn from_name(name: &str) -> Option<&'static Reader> {
+        let extension = std::path::Path::new(name).extension()?.to_str()?;
+        let is_own = |own: &&str| own.eq_ignore_ascii_case(extension);
+        let mut readers = READERS.iter();
+        readers.find(|reader| reader.extensions.0.iter().any(|own| is_own(&own)))
+    }
+}
+
+/// How a message ends for a file that is no text: the format that its name says, or else that of scenes.
+pub(crate) fn is_written_in(name: &str) -> String {
+    match Reader::from_name(name) {
+        Some(reader) => format!("{} is plain text", reader.extensions.1),
+        None => "a scene is written in RON".to_owned(),
+    }
+}
+
 /// All readers, in the order in which they are tried.
 #[rustfmt::skip]
 const READERS: [Reader; 19] = [
-    file(FileKind::Mesh, "a Gmsh mesh", "stickslip export {} -o SCENE.ron", |start| start.text.trim_start().starts_with("$MeshFormat")),
+    file(FileKind::Mesh, "a Gmsh mesh", "stickslip export {} -o SCENE.ron", |start| start.text.trim_start().starts_with("$MeshFormat")).named(&["msh"], "a Gmsh mesh"),
     file(FileKind::Results, "a file of stored results", "stickslip map SCENE --resume {}", |start| start.first.starts_with("stickslip ") && start.first.contains(" results, ")),
     file(FileKind::Exchange, "a stored exchange with an attached solver", "stickslip {}", |start| start.text.starts_with(conversation::HEAD)),
-    file(FileKind::Contacts, "the .cel file of a finished CalculiX run", "stickslip {}", |start| calculix::is_contacts(start.first)),
-    file(FileKind::Progress, "a table of a finished CalculiX run", "stickslip {}", |start| ["SUMMARY OF JOB INFORMATION", "SUMMARY OF C0NVERGENCE INFORMATION"].contains(&start.first)),
+    file(FileKind::Contacts, "the .cel file of a finished CalculiX run", "stickslip {}", |start| calculix::is_contacts(start.first)).named(&["cel"], "a .cel file of CalculiX"),
+    file(FileKind::Progress, "a table of a finished CalculiX run", "stickslip {}", |start| ["SUMMARY OF JOB INFORMATION", "SUMMARY OF C0NVERGENCE INFORMATION"].contains(&start.first))
+        .named(&["sta", "cvg"], "a .sta or .cvg file of CalculiX"),
     file(FileKind::Cast, "a terminal recording of a session", "asciinema play {}", |start| start.first.starts_with("{\"version\"")),
     file(FileKind::ChartTable, "the table of a work-precision chart", "stickslip chart --from {}", |start| start.first.starts_with("scene,series,run,")),
     file(FileKind::Table, "a table of results", "", |start| {
         let columns = ["increment,load,", "increment,attempt,", "scene,"];
         columns.iter().any(|columns| start.first.starts_with(columns)) || start.first.contains(",status,increment,load,majors")
     }),
-    scene(|start| deck::is_one(start.text) && !calculix::is_contacts(start.text), Some(|source| source.deck())),
-    scene(|start| start.text.starts_with(matrix_market::MARK), Some(|source| source.problem(problems::market::read))),
+    scene(|start| deck::is_one(start.text) && !calculix::is_contacts(start.text), Some(|source| source.deck())).named(&["inp"], "a deck"),
+    scene(|start| start.text.starts_with(matrix_market::MARK), Some(|source| source.problem(problems::market::read))).named(&["mtx"], "a Matrix Market file"),
     scene(|start| start.begins_with(stored::HEAD), Some(|source| source.problem(problems::stored::read))),
     scene(|start| start.begins_with(condensed::HEAD), Some(|source| source.condensed())),
-    scene(|start| siconos::is_one(start.text), Some(|source| source.problem(problems::opened::siconos))),
+    scene(|start| siconos::is_one(start.text), Some(|source| source.problem(problems::opened::siconos))).named(&["dat"], "a Siconos file"),
     file(FileKind::Journal, "a journal", "stickslip resume {}", |start| start.has_format() && start.first.contains("began:")),
     file(FileKind::Snapshot, "a snapshot", "stickslip replay {}", |start| start.has_format()),
     file(FileKind::Lesson, "a lesson", "stickslip lesson {}", |start| start.has(&["scene", "steps"])),
@@ -139,12 +178,15 @@ impl<'a> Start<'a> {
         }
     }
 
-    /// Whether a file with the name of a deck begins neither like one nor like another kind.
-    fn is_damaged_deck(&self, name: &str) -> bool {
-        let kind = FileKind::from_text(self.text);
-        deck::is_called_so(name)
-            && !self.text.trim_start().starts_with(['(', '/'])
-            && (kind.is_none() || siconos::is_one(self.text))
+    /// The reader that the name of a file says, if the file begins neither like one of its kind nor like another kind.
+    fn damaged(&self, name: &str) -> Option<&'static Reader> {
+        let named = Reader::from_name(name)?;
+        // A number or a keyword at the start says little.
+        let doubtful = siconos::is_one(self.text)
+            || (named.kind == FileKind::Contacts && deck::is_one(self.text));
+        let is_other = FileKind::from_text(self.text).is_some() && !doubtful
+            || self.text.trim_start().starts_with(['(', '/']);
+        (!is_other && !(named.recognise)(self)).then_some(named)
     }
 
     /// Whether this is the first word of the RON value.
@@ -310,8 +352,14 @@ impl Scene {
             overrides,
         };
         let start = Start::new(text);
-        if start.is_damaged_deck(name) {
-            return source.deck();
+        if let Some(named) = start.damaged(name) {
+            return match named.read {
+                Some(read) => read(&source),
+                None => Err(SceneError {
+                    at: Some((1, 1)),
+                    ..SceneError::whole(name, named.damage(name))
+                }),
+            };
         }
         let read = READERS
             .iter()

@@ -10,6 +10,7 @@ use stickslip::recorded::log::Log;
 pub fn tests() -> Vec<Trial> {
     crate::tests![
         our_own_solver_passes_every_check,
+        a_solver_can_be_interrupted_if_this_program_ignores_signals,
         each_wrong_is_found_by_its_check,
         an_increment_that_was_given_up_is_counted_and_the_next_one_checked,
         the_command_line_tells_it_and_ends_with_1,
@@ -243,4 +244,21 @@ fn a_check_keeps_the_exchange_of_every_start_in_the_file_that_is_named() {
     assert_eq!(code(&again), 2);
     assert!(err(&again).contains("--force"), "{}", err(&again));
     assert!(code(&run(&["--force"])) < 2);
+}
+
+/// Shells start background jobs with SIGINT ignored, which processes inherit.
+fn a_solver_can_be_interrupted_if_this_program_ignores_signals() {
+    if !cfg!(target_os = "linux") {
+        return;
+    }
+    for (signal, number) in [("INT", 2), ("QUIT", 3), ("TERM", 15)] {
+        let script = format!(
+            "trap '' INT QUIT TERM; exec \"$0\" attach --check -- sh -c 'kill -{signal} $$; exit 7'"
+        );
+        let mut shell = std::process::Command::new("sh");
+        let output = shell.args(["-c", &script, env!("CARGO_BIN_EXE_stickslip")]);
+        let text = out(&output.output().unwrap());
+        let wanted = format!("killed by signal {number}");
+        assert!(text.contains(&wanted), "{signal}: {text}");
+    }
 }

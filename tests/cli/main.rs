@@ -5,6 +5,8 @@ mod program;
 
 // run, check, list, record, replay: what ends with which code, and where its words go.
 mod run;
+// Warnings of bodies that overlap, or move without a force.
+mod warnings;
 // Studies run what they list, in that order, with the bits of a run alone.
 mod study;
 // Convergence maps count honestly, and a kill loses nothing.

@@ -453,3 +453,30 @@ fn a_mode_that_is_held_is_that_of_every_solve_at_a_vertex_too() {
     let modes: Vec<Mode> = events.map(|e| e.nodes[6].decision.before).collect();
     assert_eq!(modes, [Mode::Fixed; 12]);
 }
+
+/// The scene freezes the contact geometry; after the fallback has helped, it is in the tangent whatever is chosen.
+#[test]
+fn a_setting_that_a_fallback_overrules_is_answered_with_the_value_in_force() {
+    let scene = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/tests/findings/frozen-geometry-diverges.ron"
+    );
+    let mut session = Session::new(Scene::open(scene, &[]).unwrap());
+    let before = set(&mut session, "settings.geometry", "frozen");
+    assert!(!before.contains("in force"), "{before}");
+    let run = Command::Forward {
+        unit: Unit::Run,
+        count: 1,
+    };
+    submit(&mut session, run);
+    let back = Command::Back {
+        unit: Unit::Increment,
+        count: 1,
+    };
+    submit(&mut session, back);
+    let helped = set(&mut session, "settings.geometry", "frozen");
+    let wanted = "; in force: consistent, by the fallback \"geometry: consistent\"";
+    assert!(helped.contains(wanted), "{helped}");
+    let other = set(&mut session, "settings.majors", "50");
+    assert!(!other.contains("in force"), "{other}");
+}

@@ -557,3 +557,57 @@ fn an_empty_file_is_no_snapshot_and_no_type_of_the_program_is_named() {
         assert!(!told.contains("Snapshot"), "{text}: {told}");
     }
 }
+
+/// The name of a file says its format: a damaged beginning is refused as one of that format.
+#[test]
+fn a_damaged_beginning_is_refused_as_the_format_of_the_name() {
+    let directory = tempfile::tempdir().unwrap();
+    let utf16 = |text: &str| -> Vec<u8> {
+        let units = std::iter::once(0xfeff).chain(text.encode_utf16());
+        units.flat_map(u16::to_le_bytes).collect()
+    };
+    let noise: Vec<u8> = (0..200u32).map(|k| (k * 97 % 251 + 5) as u8).collect();
+    let marked = |text: &str| format!("\u{feff}{text}").into_bytes();
+    let market = "%%MatrixMarket matrix array real general\n2 2\n1\n0\n0\n1\n";
+    for (name, whole) in [
+        ("w.mtx", market),
+        ("w.dat", "2\n1\n1\n1 0\n"),
+        ("w.inp", "*HEADING\n*NODE\n1, 0\n"),
+        (
+            "w.cel",
+            "*ELEMENT,TYPE=C3D6,ELSET=contactelements_st1_in1_at1_it1\n",
+        ),
+        ("w.sta", "SUMMARY OF JOB INFORMATION\n"),
+        ("w.msh", "$MeshFormat\n4.1 0 8\n"),
+    ] {
+        let cut = &whole[..whole.len().min(12)];
+        for bytes in [
+            Vec::new(),
+            noise.clone(),
+            b"hello\nyou\n".to_vec(),
+            cut.as_bytes().to_vec(),
+            cut.replace('\n', "\r\n").into_bytes(),
+            marked(cut),
+            utf16(whole),
+        ] {
+            let file = directory.path().join(name);
+            std::fs::write(&file, &bytes).unwrap();
+            let why = Scene::open(file.to_str().unwrap(), &[])
+                .unwrap_err()
+                .to_string();
+            let other = why.contains("a scene is") || why.contains("round brackets");
+            assert!(
+                !other,
+                "{name}, {:?}: {why}",
+                String::from_utf8_lossy(&bytes)
+            );
+        }
+    }
+    // A scene is read as one, whatever its name.
+    let file = directory.path().join("scene.mtx");
+    std::fs::write(&file, marked("(title: 3)")).unwrap();
+    let why = Scene::open(file.to_str().unwrap(), &[])
+        .unwrap_err()
+        .to_string();
+    assert!(!why.contains("MatrixMarket"), "{why}");
+}

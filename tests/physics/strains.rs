@@ -299,7 +299,14 @@ fn the_law_of_an_inverted_element_is_the_first_that_is_tried_and_helps() {
     let mut run = run(&collapses);
     let state = run.stepper.state().clone();
     let spec = Some(&collapses.spec);
-    let found = page::page(&mut run.stepper, &state, spec, &|| false, &mut |_| {}).unwrap();
+    let found = page::page(
+        &mut run.stepper,
+        &state,
+        (spec, Vec::new()),
+        &|| false,
+        &mut |_| {},
+    )
+    .unwrap();
     assert!(found.why[0].contains("element 14 of g"));
     let first = &found.tries[0];
     assert_eq!(first.typed, "--set materials.rubber.law=neohookean");

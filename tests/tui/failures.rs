@@ -198,7 +198,14 @@ fn a_state_that_the_judge_refuses_has_a_page_with_the_law_the_node_and_what_is_a
     state.status = Status::Failed(Failure::Refused(why));
     let mut stepper = Stepper::new(Arc::new(session.model().clone()));
     let spec = Some(&session.scene().spec);
-    let found = page(&mut stepper, &state, spec, &|| false, &mut |_| {}).unwrap();
+    let found = page(
+        &mut stepper,
+        &state,
+        (spec, Vec::new()),
+        &|| false,
+        &mut |_| {},
+    )
+    .unwrap();
     let told = found.lines().join("\n");
     let name = &session.model().nodes[session.model().contacts[0].node].name;
     for part in [

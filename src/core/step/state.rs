@@ -313,6 +313,15 @@ impl State {
         state
     }
 
+    /// The fallbacks that may change the settings: that of the current increment, and the contact geometry once it has helped.
+    pub fn fallbacks(&self) -> impl Iterator<Item = Fallback> {
+        let current = self.recovery.fallback.map(|route| route.by);
+        let searched = self.record.searched.geometry && current != Some(Fallback::Geometry);
+        current
+            .into_iter()
+            .chain(searched.then_some(Fallback::Geometry))
+    }
+
     /// The settings in force: with the strategy of the current rung, its update of T_max, and the changes of a fallback.
     pub fn settings(&self) -> Settings {
         let mut settings = strategy::in_force(
@@ -320,11 +329,8 @@ impl State {
             self.attempt.search.rung,
             self.nodes.len(),
         );
-        if let Some(route) = self.recovery.fallback {
-            settings = route.by.in_force(settings);
-        }
-        if self.record.searched.geometry {
-            settings = Fallback::Geometry.in_force(settings);
+        for by in self.fallbacks() {
+            settings = by.in_force(settings);
         }
         if self.recovery.brake.is_some() && !self.attempt.net {
             settings.slip = SlipCount::Major;

@@ -2,6 +2,7 @@
 
 use super::conditions::{Support, supports};
 use super::round_off::reach;
+use super::unforced::FreeBodies;
 use std::collections::HashMap;
 use stickslip_core::Model;
 use stickslip_core::model::{Body, SolidElement};
@@ -18,6 +19,8 @@ pub struct ModelFacts {
     pub largest_element: f64,
     /// The faces between different materials of a solid.
     pub seams: Vec<Vec<usize>>,
+    /// The bodies that only contacts hold.
+    pub free: FreeBodies,
 }
 
 impl ModelFacts {
@@ -26,6 +29,7 @@ impl ModelFacts {
         let mut facts = ModelFacts {
             reach: reach(model),
             supports: supports(model),
+            free: FreeBodies::new(model),
             ..ModelFacts::default()
         };
         for body in &model.bodies {

@@ -40,11 +40,11 @@ const MOST_STATES: usize = 4;
 const MOST_TRIED: usize = 6;
 
 /// Makes the page of a state. `spec` is the scene as written by its author, from which a finer mesh is
-/// generated; calls `tell` as the page grows. `None` if interrupted.
+/// generated; `warnings` are those of the run up to a failed state; calls `tell` as the page grows. `None` if interrupted.
 pub fn page(
     stepper: &mut Stepper,
     state: &State,
-    spec: Option<&Spec>,
+    (spec, warnings): (Option<&Spec>, Vec<String>),
     stop: &dyn Fn() -> bool,
     tell: &mut dyn FnMut(&DiagnosisPage),
 ) -> Option<DiagnosisPage> {
@@ -61,6 +61,7 @@ pub fn page(
         return Some(found);
     };
     let mut page = PageBuilder::from_state(stepper, state, failure, stop);
+    page.facts.extend(Fact::all(Part::Details, warnings));
     tell(&page.shown("trying remedies …"));
     page.pending = page.remedies(stepper.model(), state, (failure, spec));
     while !page.pending.is_empty() {

@@ -3,109 +3,170 @@
 //! A body that only contacts hold is in equilibrium wherever it lies if all of its contact forces are zero. The states are
 //! accepted, because they obey every law, but its position may follow from the course of the iterations.
 
+use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
+use std::sync::Arc;
 use stickslip_core::contact::record::ContactRecord;
 use stickslip_core::model::{BodyKind, diagonal};
-use stickslip_core::{Body, Model, Norms};
-use stickslip_scene::{shortest, sig4};
+use stickslip_core::{Body, Event, IncrementStart, Model, Outcome};
+use stickslip_scene::{overlaps, shortest, sig4};
 
 /// Contact forces below this part of the force scale are round-off.
 const NO_FORCE: f64 = 1e-9;
 /// Motions below this part of the scene's length are not reported: a body that is let go moves as its strains recover.
 const NO_MOTION: f64 = 1e-3;
 
-/// A body that only contacts hold.
-struct FreeBody {
-    body: usize,
-    contacts: Vec<usize>,
-    /// Where it moved without a force: first and last increment, and load.
-    moved: Option<(RangeInclusive<u32>, [f64; 2])>,
-    /// The farthest that a node of it moved in one increment (length).
-    farthest: f64,
-}
-
-/// Watches the accepted increments of a run for bodies that move without a force.
-pub struct UnforcedWatch {
+/// The bodies of a model that only contacts hold.
+#[derive(Debug, Clone, Default)]
+pub struct FreeBodies {
     bodies: Vec<FreeBody>,
-    /// Positions after the last accepted increment.
-    places: Vec<[f64; 2]>,
+    /// Length of the scene.
     length: f64,
 }
 
-impl UnforcedWatch {
-    /// Starts to watch a run of a model from a state; `u` are its displacements.
-    pub fn new(model: &Model, u: &[f64]) -> UnforcedWatch {
-        UnforcedWatch {
+/// A body that only contacts hold: its number, and those of its contacts.
+#[derive(Debug, Clone)]
+struct FreeBody {
+    body: usize,
+    contacts: Vec<usize>,
+}
+
+/// A body that moved in an increment although no force acts on it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct UnforcedMotion {
+    /// Number of the body.
+    pub body: usize,
+    /// The farthest that a node of it moved (length).
+    pub distance: f64,
+}
+
+impl FreeBodies {
+    /// The free bodies of a model.
+    pub fn new(model: &Model) -> FreeBodies {
+        FreeBodies {
             bodies: free_bodies(model),
-            places: model.places(u),
             length: diagonal(model.nodes.iter()),
         }
     }
 
-    /// Records an accepted increment: its number and load, and its contacts, norms and displacements at its end.
-    pub fn see(
-        &mut self,
+    /// The bodies that moved without a force in an accepted increment, from the displacements at its start and its end.
+    pub fn motions(
+        &self,
         model: &Model,
-        (increment, load): (u32, f64),
-        contacts: &[ContactRecord],
-        norms: &Norms,
-        u: &[f64],
-    ) {
+        event: &Event,
+        [from, to]: [&[f64]; 2],
+    ) -> Vec<UnforcedMotion> {
+        let Outcome::Increment { after, .. } = &event.outcome else {
+            return Vec::new();
+        };
         let size = |contact: &ContactRecord| contact.f_n.hypot(contact.f_t);
-        let places = model.places(u);
-        for free in &mut self.bodies {
-            let force = free.contacts.iter().map(|&c| size(&contacts[c]));
-            if force.fold(0.0, f64::max) > NO_FORCE * norms.scale {
-                continue;
+        let moved = self.bodies.iter().filter_map(|free| {
+            let force = free.contacts.iter().map(|&c| size(&event.nodes[c]));
+            if force.fold(0.0, f64::max) > NO_FORCE * after.scale {
+                return None;
             }
             let nodes = model.bodies[free.body].nodes.iter();
-            let motion = nodes
-                .map(|&node| {
-                    let ([x, y], [was_x, was_y]) = (places[node], self.places[node]);
-                    (x - was_x).hypot(y - was_y)
-                })
-                .fold(0.0, f64::max);
-            if motion <= NO_MOTION * self.length {
-                continue;
-            }
-            free.farthest = free.farthest.max(motion);
-            let first = free
-                .moved
-                .as_ref()
-                .map(|(seen, [from, _])| (*seen.start(), *from));
-            let (start, from) = first.unwrap_or((increment, load));
-            free.moved = Some((start..=increment, [from, load]));
-        }
-        self.places = places;
+            let motion = nodes.map(|&node| {
+                let ([x, y], [was_x, was_y]) = (model.place(to, node), model.place(from, node));
+                (x - was_x).hypot(y - was_y)
+            });
+            let distance = motion.fold(0.0, f64::max);
+            let body = free.body;
+            (distance > NO_MOTION * self.length).then_some(UnforcedMotion { body, distance })
+        });
+        moved.collect()
     }
+}
 
-    /// Positions of all nodes after the last accepted increment.
-    pub fn places(&self) -> &[[f64; 2]] {
-        &self.places
+/// The motions without a force in a run, by body.
+#[derive(Debug, Clone, Default)]
+pub struct UnforcedLog(BTreeMap<usize, UnforcedRange>);
+
+/// Where a body moved without a force: first and last increment, and load; and the farthest motion in one of them (length).
+#[derive(Debug, Clone)]
+struct UnforcedRange {
+    increments: RangeInclusive<u32>,
+    loads: [f64; 2],
+    farthest: f64,
+}
+
+impl UnforcedLog {
+    /// Adds the motions of an accepted increment: its number and load.
+    pub fn add(&mut self, increment: u32, load: f64, motions: &[UnforcedMotion]) {
+        for motion in motions {
+            let range = self.0.entry(motion.body).or_insert(UnforcedRange {
+                increments: increment..=increment,
+                loads: [load; 2],
+                farthest: 0.0,
+            });
+            range.increments = *range.increments.start()..=increment;
+            range.loads[1] = load;
+            range.farthest = range.farthest.max(motion.distance);
+        }
     }
 
     /// One sentence per body that moved without a force.
-    pub fn found(&self, model: &Model) -> Vec<String> {
-        let moved = self.bodies.iter().filter_map(|free| {
-            let (seen, [from, to]) = free.moved.as_ref()?;
-            let name = &model.bodies[free.body].name;
-            let within = match (seen.start(), seen.end()) {
+    fn words(&self, model: &Model) -> Vec<String> {
+        let moved = self.0.iter().map(|(&body, range)| {
+            let name = &model.bodies[body].name;
+            let [from, to] = range.loads;
+            let within = match (range.increments.start(), range.increments.end()) {
                 (first, last) if first == last => {
-                    format!("in increment {first} (load {})", shortest(*to))
+                    format!("in increment {first} (load {})", shortest(to))
                 }
                 (first, last) => format!(
                     "in increments {first} to {last} (load {} to {})",
-                    shortest(*from),
-                    shortest(*to)
+                    shortest(from),
+                    shortest(to)
                 ),
             };
-            Some(format!(
+            format!(
                 "body {name} moved by up to {} {within} although no force acts on it: its place may depend on the course of \
                  the iterations; support it, or hold it by soft springs",
-                sig4(free.farthest)
-            ))
+                sig4(range.farthest)
+            )
         });
         moved.collect()
+    }
+
+    /// Warnings about the places of bodies after a run: those that moved without a force, and those that overlap in the last
+    /// accepted state.
+    pub fn warnings(&self, model: &Model, last: &IncrementStart) -> Vec<String> {
+        let mut all = self.words(model);
+        all.extend(overlaps::at_end(model, last));
+        all
+    }
+}
+
+/// Watches the accepted increments of a run for bodies that move without a force.
+pub struct UnforcedWatch {
+    bodies: FreeBodies,
+    /// Displacements after the last accepted increment.
+    u: Arc<Vec<f64>>,
+    log: UnforcedLog,
+}
+
+impl UnforcedWatch {
+    /// Starts to watch a run of a model from its last accepted state.
+    pub fn new(model: &Model, start: &IncrementStart) -> UnforcedWatch {
+        UnforcedWatch {
+            bodies: FreeBodies::new(model),
+            u: start.u.clone(),
+            log: UnforcedLog::default(),
+        }
+    }
+
+    /// Records an accepted increment and the state at its end.
+    pub fn see(&mut self, model: &Model, event: &Event, last: &IncrementStart) {
+        let motions = self.bodies.motions(model, event, [&self.u, &last.u]);
+        self.log
+            .add(event.position.increment, event.load_factor, &motions);
+        self.u = last.u.clone();
+    }
+
+    /// The motions so far.
+    pub fn log(&self) -> &UnforcedLog {
+        &self.log
     }
 }
 
@@ -154,11 +215,6 @@ fn free_bodies(model: &Model) -> Vec<FreeBody> {
     }
     let free = contacts.into_iter().zip(held).enumerate();
     free.filter(|(_, (contacts, held))| !held && !contacts.is_empty())
-        .map(|(body, (contacts, _))| FreeBody {
-            body,
-            contacts,
-            moved: None,
-            farthest: 0.0,
-        })
+        .map(|(body, (contacts, _))| FreeBody { body, contacts })
         .collect()
 }

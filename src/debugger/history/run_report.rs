@@ -1,11 +1,12 @@
-//! The report of a finished run: cuts and their causes, jumps, loss of stability, the worst element, and the increments with the
-//! most iterations and the longest time.
+//! The report of a finished run: cuts and their causes, jumps, loss of stability, bodies that moved without a force or overlap, the
+//! worst element, and the increments with the most iterations and the longest time.
 
 use super::frame::Frame;
 use super::strip::{PointKind, Strip};
 use crate::explain::facts::{Fact, Part};
 use crate::explain::headline::brief;
 use crate::explain::strain;
+use crate::explain::unforced::UnforcedLog;
 use stickslip_core::fem::deformation::deformation;
 use stickslip_core::words::noun_for;
 use stickslip_core::{Model, Outcome, counted};
@@ -60,6 +61,9 @@ pub fn run_report(model: &Model, strips: &[Strip], frames: &[Frame]) -> (String,
     };
     lines.extend(loads(&jumped).map(|loads| format!("jumps to another branch at load {loads}")));
     lines.extend(loads(&unstable).map(|loads| format!("becomes unstable at load {loads}")));
+    if let Some(last) = frames.last() {
+        lines.extend(unforced(strips).warnings(model, &last.state.start));
+    }
     lines.extend(worst_element(model, frames));
     lines.extend(most("most iterations", &costs, |cost| {
         (cost.minors as f32, format!("{} minor", cost.minors))
@@ -69,6 +73,15 @@ pub fn run_report(model: &Model, strips: &[Strip], frames: &[Frame]) -> (String,
         (cost.seconds, format!("{:.1} s", cost.seconds))
     }));
     (head, Fact::all(Part::Report, lines))
+}
+
+/// The motions without a force on a line.
+pub fn unforced(strips: &[Strip]) -> UnforcedLog {
+    let mut log = UnforcedLog::default();
+    for strip in strips {
+        log.add(strip.position.increment, strip.load_factor, &strip.unforced);
+    }
+    log
 }
 
 /// The cost of each accepted increment.

@@ -5,6 +5,7 @@
 //! iteration in which a node moves to another element takes 4 more bytes per node; the start of an increment
 //! and the end of a major iteration add their norms.
 
+use crate::explain::unforced::UnforcedMotion;
 use std::sync::Arc;
 use stickslip_core::{
     ContactRecord, Event, Failure, Forced, Mode, Model, Norms, Outcome, Position, State,
@@ -115,6 +116,8 @@ pub struct Strip {
     pub first: Option<Box<Norms>>,
     /// Norms after the iteration, if a major iteration ended successfully.
     pub after: Option<Box<Norms>>,
+    /// Bodies that moved without a force in the increment that was accepted here.
+    pub unforced: Box<[UnforcedMotion]>,
     /// Wall time of the solve; not part of the state, and never compared.
     pub seconds: f32,
     /// One byte per slave node: bits 0-1 mode before, 2-3 next mode, 4 forced once, 5 held, 6 held in a corner,
@@ -178,6 +181,7 @@ impl Strip {
                 .filter(|event| begins(event) || model.finished.is_some())
                 .map(|event| Box::new(event.before)),
             after: event.and_then(|event| norms_after(&event.outcome).copied().map(Box::new)),
+            unforced: Box::default(),
             seconds,
             marks: (0..count).map(mark).collect(),
             margins: (0..count)
@@ -209,6 +213,7 @@ impl Strip {
             residual: before.residual,
             first: None,
             after: None,
+            unforced: Box::default(),
             seconds: 0.0,
             marks: state.nodes.iter().map(mark).collect(),
             margins: before.margins.clone(),

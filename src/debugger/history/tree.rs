@@ -197,8 +197,12 @@ impl Tree {
     }
 
     /// Appends a point to the tip.
-    pub fn push(&mut self, mut frame: Frame, strip: Strip) {
+    pub fn push(&mut self, mut frame: Frame, mut strip: Strip) {
         if let Some(tip) = self.line.frames.last() {
+            if let Some(event) = frame.event.as_ref().filter(|_| strip.kind.is_accepted()) {
+                let u = [tip, &frame].map(|frame| &frame.state.start.u[..]);
+                strip.unforced = self.facts.free.motions(&self.model, event, u).into();
+            }
             copy(&mut frame, tip);
         }
         self.ledger.add(&frame);

@@ -463,10 +463,11 @@ impl Helper {
                 })
                 .ok()
             }
-            BackgroundRequest::Examination(place, state, nodes, _) => {
+            BackgroundRequest::Examination(place, state, nodes, reported) => {
                 self.borrow(&state);
                 let (stepper, spec) = self.solver();
-                examine(stepper, spec, (place, &state, nodes), news, stop)
+                let known = (spec, reported.findings);
+                examine(stepper, known, (place, &state, nodes), news, stop)
             }
             BackgroundRequest::Export(ask) => {
                 let done = if self.spec.is_none() && is_of_problem(&ask) {
@@ -544,7 +545,7 @@ impl Helper {
 /// Examines a state, for these nodes or, if there are none, for the relevant ones.
 fn examine(
     stepper: &mut Stepper,
-    spec: Option<&Spec>,
+    known: (Option<&Spec>, Vec<String>),
     (place, state, nodes): (LinePlace, &State, Vec<usize>),
     news: &Sender<BackgroundReply>,
     stop: &AtomicBool,
@@ -562,7 +563,7 @@ fn examine(
         [] => page(
             stepper,
             state,
-            spec,
+            known,
             &stopped,
             // A closed channel is noticed after the last part.
             &mut |part| drop(send(Some(part.clone()), true)),

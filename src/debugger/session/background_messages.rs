@@ -20,7 +20,7 @@ pub(super) enum BackgroundRequest {
     Export(Export),
 }
 
-/// What a line shows about an attached solver; empty for our own.
+/// What a line shows about an attached solver; for our own, the warnings of the run up to a failed state.
 #[derive(Default)]
 pub(super) struct Reported {
     /// How it failed or what law the accepted state breaks, and whether its modes repeat.

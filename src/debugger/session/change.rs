@@ -6,6 +6,7 @@ use super::worker::Steps;
 use crate::explain::report;
 use crate::history::branches;
 use crate::refusal::Refusal;
+use stickslip_core::step::state::Controls;
 use stickslip_core::{Intervention, State};
 
 impl Session {
@@ -32,6 +33,7 @@ impl Session {
             }
             _ => report::intervention(self.model(), &intervention),
         };
+        reply.extend(setting.and_then(|(path, _)| self.overruled(path, &state)));
         let label = branches::label(self.model(), &intervention, setting);
         if let Some(branch) = self.timeline.intervene(state, intervention, label) {
             reply += &format!(" (in the new branch {branch})");
@@ -68,6 +70,22 @@ impl Session {
             controls: &state.controls,
         };
         Some((path.trim(), current.value(path)?))
+    }
+
+    /// The value of a setting that a fallback puts in force instead of the chosen one, for the end of a reply.
+    fn overruled(&self, path: &str, state: &State) -> Option<String> {
+        let value = |controls: &Controls| {
+            let scene = &self.scene;
+            CurrentScene { scene, controls }.value(path)
+        };
+        let chosen = value(&state.controls).filter(|_| state.outside.is_none())?;
+        state.fallbacks().find_map(|by| {
+            let mut controls = (*state.controls).clone();
+            controls.settings = by.in_force(controls.settings);
+            let other = value(&controls).filter(|other| *other != chosen)?;
+            let words = by.words();
+            Some(format!("; in force: {other}, by the fallback \"{words}\""))
+        })
     }
 
     /// Takes a sequence of steps from the cursor, in a new branch.

@@ -1,6 +1,6 @@
 //! Questions about the shown state that the background thread answers, and snapshots of it.
 
-use super::background_messages::{BetweenRuns, Reported};
+use super::background_messages::BetweenRuns;
 use super::exports::{Export, PictureContext};
 use super::machine::Session;
 use crate::explain::report;
@@ -68,7 +68,7 @@ impl Session {
         let (timeline, connection) = (&self.timeline, &mut self.connection);
         let reported = match connection.log() {
             Some(_) => timeline.reported(),
-            None => Reported::default(),
+            None => timeline.warnings(),
         };
         let mut reply = String::new();
         let state = &timeline.frame().state;

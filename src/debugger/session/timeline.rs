@@ -11,6 +11,7 @@ use crate::explain::walk::MOST_REPORTED;
 use crate::history::branches;
 use crate::history::compare::{self, Comparison};
 use crate::history::rounds::{self, rounds};
+use crate::history::run_report::unforced;
 use crate::history::verdicts;
 use crate::record::export::export_state::COLUMNS;
 use crate::record::snapshot::AppliedIntervention;
@@ -405,6 +406,21 @@ impl Timeline {
             state: Box::new(self.frames()[from].state.clone()),
             steps: self.interventions(from, self.cursor - 1),
             before: before - from - 1,
+        }
+    }
+
+    /// The warnings of our own solver's run up to a failed state.
+    pub(super) fn warnings(&self) -> Reported {
+        let state = &self.frame().state;
+        let findings = match state.status {
+            Status::Failed(_) => {
+                unforced(&self.strips()[..=self.cursor]).warnings(self.model(), &state.start)
+            }
+            _ => Vec::new(),
+        };
+        Reported {
+            findings,
+            ..Reported::default()
         }
     }
 

@@ -180,7 +180,7 @@ pub fn text(file: &str) -> Result<String, SceneError> {
 pub fn unread(file: &str, error: Unreadable) -> SceneError {
     let mut error = not_read(file, &error);
     if error.at.is_some() {
-        error.message += "; a scene is written in RON";
+        error.message += &format!("; {}", crate::readers::is_written_in(file));
     }
     error
 }

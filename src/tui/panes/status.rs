@@ -8,7 +8,9 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
 use ratatui::text::{Line, Span};
-use stickslip_core::{Event, Forced, Model, Outcome, RewindSupport, Status, Strategy, counted};
+use stickslip_core::{
+    Event, Fallback, Forced, Model, Outcome, RewindSupport, Status, Strategy, counted,
+};
 use stickslip_debugger::DiagnosisPage;
 use stickslip_debugger::action::by_name;
 use stickslip_debugger::explain::names;
@@ -403,7 +405,9 @@ fn interventions(view: &View) -> Option<String> {
     let state = &view.frame().state;
     let strategy = state.settings().strategy;
     let leads = strategy != Strategy::Table2 && state.status != Status::Finished;
+    let fallbacks = joined(state.fallbacks().map(Fallback::words), ", ");
     let parts = [
+        (!fallbacks.is_empty()).then(|| format!("fallback: {fallbacks}")),
         leads.then(|| format!("strategy {}", strategy.name())),
         (state.sub_increment.cut > 0).then(|| {
             format!(

@@ -75,7 +75,7 @@ impl Fallback {
     }
 
     /// The settings in force with this fallback.
-    pub(in crate::step) fn in_force(self, mut settings: Settings) -> Settings {
+    pub fn in_force(self, mut settings: Settings) -> Settings {
         match self {
             Fallback::Touching
             | Fallback::Section

@@ -1,0 +1,191 @@
+//! Warnings about the places of bodies after a run: those of `run` are those of the debugger's report.
+
+use crate::program::{code, err, ran};
+use std::path::Path;
+use stickslip::record::command::{Command, Unit};
+use stickslip::scene::Scene;
+use stickslip::session::Session;
+
+const WEDGE: &str = concat!(
+    env!("CARGO_MANIFEST_DIR"),
+    "/tests/findings/wedge-let-go.ron"
+);
+
+/// The warnings of `run --quiet` about bodies.
+fn warnings(scene: &str, ends: i32) -> Vec<String> {
+    let output = ran(Path::new("."), &["run", scene, "--quiet"]);
+    assert_eq!(code(&output), ends, "{}", err(&output));
+    let lines = err(&output);
+    let lines = lines
+        .lines()
+        .filter_map(|line| line.strip_prefix("warning: "));
+    let of_bodies = lines.filter(|line| line.starts_with("bod"));
+    of_bodies.map(str::to_owned).collect()
+}
+
+/// The lines of the debugger's diagnosis after the same run.
+fn report(scene: &str) -> Vec<String> {
+    let mut session = Session::new(Scene::open(scene, &[]).unwrap());
+    let run = Command::Forward {
+        unit: Unit::Run,
+        count: 1,
+    };
+    session.submit(run).unwrap();
+    session.wait();
+    session.submit(Command::Census(Vec::new())).unwrap();
+    session.wait();
+    session.background_mut().wait();
+    let page = session.background().examination(session.timeline().place());
+    page.flatten().unwrap().lines()
+}
+
+#[track_caller]
+fn agree(scene: &str, ends: i32, parts: &[&str]) {
+    let warnings = warnings(scene, ends);
+    let report = report(scene);
+    assert_eq!(warnings.len(), parts.len(), "{warnings:#?}");
+    for (warning, part) in warnings.iter().zip(parts) {
+        assert!(warning.contains(part), "{warning}");
+        assert!(
+            report.iter().any(|line| line.trim() == *warning),
+            "{warning}\n{report:#?}"
+        );
+    }
+}
+
+#[test]
+fn the_report_warns_of_bodies_that_move_without_a_force() {
+    agree(WEDGE, 0, &["body wedge moved by up to"]);
+}
+
+/// The ram comes down again on a wedge that has moved, too far for the elements.
+#[test]
+fn the_diagnosis_of_a_failed_run_has_its_warnings() {
+    let directory = tempfile::tempdir().unwrap();
+    let text = std::fs::read_to_string(WEDGE).unwrap();
+    let crushed = text
+        .replace(
+            "scale: [(0.0, 0.0), (1.0, 1.0)]",
+            "scale: [(0.0, 0.0), (1.0, 1.0), (3.0, 1.0), (4.0, 200.0)]",
+        )
+        .replace("3.0], increment", "3.0, 4.0], increment");
+    assert_ne!(text, crushed);
+    let scene = directory.path().join("crushed.ron");
+    std::fs::write(&scene, crushed).unwrap();
+    let parts = [
+        "body wedge moved by up to",
+        "bodies base and ram overlap in the last accepted state",
+    ];
+    agree(scene.to_str().unwrap(), 3, &parts);
+}
+
+/// A pad is pressed through a strip on a base: the contact of the strip with the pad is defined the wrong way round.
+fn pressed(strip: f64, law: [&str; 2], by: f64) -> String {
+    format!(
+        r#"(
+    title: "Pads on a base",
+    nodes: [
+        Block(id: "base", corners: [(-1.0, -{strip}), (2.0, 0.0)], elements: (1, 1), element: quad4),
+        Block(id: "pad", corners: [(0.0, 0.0), (1.0, 1.0)], elements: (1, 1), element: quad4),
+        Block(id: "floor", corners: [(4.0, -1.0), (6.0, 0.0)], elements: (1, 1), element: quad4),
+        Block(id: "block", corners: [(4.5, 0.0), (5.5, 1.0)], elements: (1, 1), element: quad4),
+    ],
+    materials: [Elastic(id: "soft", E: 100.0, nu: 0.2)],
+    bodies: [
+        Solid(id: "base", mesh: "base", material: "soft"),
+        Solid(id: "pad", mesh: "pad", material: "soft"),
+        Solid(id: "floor", mesh: "floor", material: "soft"),
+        Solid(id: "block", mesh: "block", material: "soft"),
+    ],
+    surfaces: [(id: "below", along: "pad.bottom"), (id: "ground", along: "floor.top")],
+    slaves: [
+        (nodes: ["base.top"], on: ["below"]{}),
+        (nodes: ["block.bottom"], on: ["ground"]{}),
+    ],
+    supports: [
+        (node: "base.bottom", fix: [x, y]), (node: "pad.top", fix: [x]),
+        (node: "floor.bottom", fix: [x, y]), (node: "block.top", fix: [x]),
+    ],
+    loads: [
+        Displacement(node: "pad.top", component: y, value: -{by}),
+        Displacement(node: "block.top", component: y, value: -0.1),
+    ],
+    history: (path: [0.0, 1.0], increment: 0.5),
+)"#,
+        law[0], law[1]
+    )
+}
+
+#[test]
+fn overlaps_of_thin_bodies_are_found_and_are_in_the_report() {
+    let directory = tempfile::tempdir().unwrap();
+    let scene = directory.path().join("pads.ron");
+    let scene = scene.to_str().unwrap();
+    for (strip, by) in [(1.0, 0.1), (0.03, 0.02), (0.002, 0.0009)] {
+        std::fs::write(scene, pressed(strip, ["", ""], by)).unwrap();
+        agree(
+            scene,
+            0,
+            &["bodies base and pad overlap in the last accepted state"],
+        );
+    }
+    std::fs::write(scene, pressed(0.03, ["", ""], 0.002)).unwrap();
+    assert!(warnings(scene, 0).is_empty());
+}
+
+/// The soft contact of block and floor says nothing about pad and base.
+#[test]
+fn a_soft_contact_excuses_only_its_own_bodies() {
+    let directory = tempfile::tempdir().unwrap();
+    let scene = directory.path().join("pads.ron");
+    let scene = scene.to_str().unwrap();
+    let soft = ", law: Penalty(stiffness: 50.0)";
+    std::fs::write(scene, pressed(1.0, ["", soft], 0.05)).unwrap();
+    agree(
+        scene,
+        0,
+        &["bodies base and pad overlap in the last accepted state"],
+    );
+}
+
+#[test]
+fn loose_bodies_are_named_in_the_order_of_the_scene() {
+    let block = |id: &str, x: f64| {
+        format!(
+            "Block(id: \"{id}\", corners: [({x}, 0.0), ({}, 1.0)], elements: (1, 1)),",
+            x + 1.0
+        )
+    };
+    let ids = ["b2", "b10"];
+    let [nodes, bodies, slaves, loads] = [
+        ids.iter()
+            .zip([0.0, 2.0])
+            .map(|(id, x)| block(id, x))
+            .collect::<String>(),
+        ids.map(|id| format!("Solid(id: \"{id}\", mesh: \"{id}\", material: \"soft\"),"))
+            .concat(),
+        ids.map(|id| {
+            format!("(nodes: [\"{id}.bottom\"], on: [\"ground\"], friction: (angle: 30.0)),")
+        })
+        .concat(),
+        ids.map(|id| format!("Force(node: \"{id}.top.2\", y: -1.0),"))
+            .concat(),
+    ];
+    let text = format!(
+        r#"(title: "Blocks above the ground",
+    nodes: [Block(id: "base", corners: [(-1.0, -1.0), (4.0, -0.01)], elements: (2, 1)), {nodes}],
+    materials: [Elastic(id: "soft", E: 1000.0, nu: 0.2)],
+    bodies: [Solid(id: "base", mesh: "base", material: "soft"), {bodies}],
+    surfaces: [(id: "ground", along: "base.top")],
+    slaves: [{slaves}],
+    supports: [(node: "base.bottom", fix: [x, y])],
+    loads: [{loads}],
+    history: (path: [0.0, 1.0], increment: 0.5),
+)"#
+    );
+    let directory = tempfile::tempdir().unwrap();
+    std::fs::write(directory.path().join("blocks.ron"), text).unwrap();
+    let output = ran(directory.path(), &["run", "blocks.ron"]);
+    let line = "note: loose until first contact: b2, b10, increment 1";
+    assert!(err(&output).contains(line), "{}", err(&output));
+}
