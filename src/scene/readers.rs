@@ -115,7 +115,7 @@ impl Reader {
         let extension = std::path::Path::new(name).extension()?.to_str()?;
         let is_own = |own: &&str| own.eq_ignore_ascii_case(extension);
         let mut readers = READERS.iter();
-        readers.find(|reader| reader.extensions.0.iter().any(|own| is_own(&own)))
+        readers.find(|reader| reader.extensions.0.iter().any(|own| is_own(own)))
     }
 }
 
