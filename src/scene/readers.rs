@@ -115,15 +115,7 @@ impl Reader {
         let extension = std::path::Path::new(name).extension()?.to_str()?;
         let is_own = |own: &&str| own.eq_ignore_ascii_case(extension);
         let mut readers = READERS.iter();
-        readers.find(|reader| reader.extensions.0.iter().any(|own| is_own(own)))
-    }
-}
-
-/// How a message ends for a file that is no text: the format that its name says, or else that of scenes.
-pub(crate) fn is_written_in(name: &str) -> String {
-    match Reader::from_name(name) {
-        Some(reader) => format!("{} is plain text", reader.extensions.1),
-        None => "a scene is written in RON".to_owned(),
+        readers.find(|reader| reader.extensions.0.iter().any(is_own))
     }
 }
 
@@ -308,6 +300,11 @@ impl Scene {
         let text = text.map_err(|mut error| {
             if !disk::exists(name) {
                 error.message = no_such_scene(name);
+            }
+            if let Some(named) = Reader::from_name(name)
+                && let Some(why) = error.message.strip_suffix(read::WRITTEN)
+            {
+                error.message = format!("{why}; {} is plain text", named.extensions.1);
             }
             error
         })?;

@@ -14,6 +14,7 @@ use stickslip::interface::problem::InterfaceProblem;
 use stickslip::interface::trials::Trials;
 use stickslip::linear::norms::Norms;
 use stickslip::model::Mode;
+use stickslip::scene::Scene;
 use stickslip::scene::gaps::turned;
 use stickslip::step::event::Failure;
 use stickslip::step::state::Status;
@@ -262,4 +263,42 @@ fn a_mesh_whose_nodes_are_named_singly_is_not_tried_finer() {
     };
     assert!(is_refined("coarse-mesh-with-frozen-geometry"));
     assert!(!is_refined("slides-to-the-end-of-its-surface"));
+}
+
+/// On the finer mesh the nodes have other numbers, so that half of the slave sides, or the node of the monitor, is elsewhere.
+#[test]
+fn a_mesh_whose_faces_or_monitors_are_named_by_nodes_is_not_tried_finer() {
+    let is_refined = |slaves: &str, monitor: &str| {
+        let text = format!(
+            r#"(
+    title: "A block on a base",
+    nodes: [
+        Block(id: "base", corners: [(-0.5, 0.0), (1.5, 0.5)], elements: (2, 1)),
+        Block(id: "b", corners: [(0.0, 0.5), (1.0, 1.0)], elements: (2, 1)),
+    ],
+    materials: [Elastic(id: "soft", E: 1000.0, nu: 0.2)],
+    bodies: [
+        Solid(id: "base", mesh: "base", material: "soft"),
+        Solid(id: "b", mesh: "b", material: "soft"),
+    ],
+    surfaces: [(id: "below", along: "base.top")],
+    slaves: [(nodes: [{slaves}], on: ["below"], law: Penalty(stiffness: 1e5), by: surface)],
+    supports: [(node: "base.bottom", fix: [x, y]), (node: "b.top", fix: [x])],
+    loads: [Displacement(node: "b.top", component: y, value: -0.01)],
+    monitors: [(name: "u", of: Displacement(node: "{monitor}", component: x))],
+    history: (path: [0.0, 1.0], increment: 0.5),
+)"#
+        );
+        let [mesh, finer] = ["1", "2"].map(|refine| {
+            let refine = ("refine".to_owned(), refine.to_owned());
+            Scene::from_text("block.ron", &text, &[refine])
+                .unwrap()
+                .model
+        });
+        restart::is_refined(&finer, &mesh)
+    };
+    let numbered: Vec<String> = (1..=5).map(|k| format!("\"b.bottom.{k}\"")).collect();
+    assert!(is_refined("\"b.bottom\"", "b.top.start"));
+    assert!(!is_refined(&numbered.join(", "), "b.top.start"));
+    assert!(!is_refined("\"b.bottom\"", "b.bottom.2"));
 }

@@ -47,7 +47,7 @@ pub fn check(scene: &Scene) -> Option<CheckedPage> {
     let made = page(
         &mut stepper,
         &state,
-        Some(&scene.spec),
+        (Some(&scene.spec), Vec::new()),
         &|| false,
         &mut |_| {},
     );

@@ -190,7 +190,13 @@ fn a_count_and_a_page_that_are_stopped_keep_what_was_found_and_say_that_it_is_no
     let words = texts(&counted.facts);
     assert!(words.contains("incomplete after 0 branches"), "{words}");
     let mut parts = 0;
-    let whole = page(&mut stepper, &state, None, &|| true, &mut |_| parts += 1);
+    let whole = page(
+        &mut stepper,
+        &state,
+        (None, Vec::new()),
+        &|| true,
+        &mut |_| parts += 1,
+    );
     assert_eq!((whole, parts), (None, 1));
 }
 

@@ -167,7 +167,13 @@ fn a_matrix_that_is_indefinite_by_rounding_is_solved_once_it_is_made_semidefinit
         assert!(failed.failure.is_some(), "no state obeys");
         let mut stepper = failed.stepper;
         let state = stepper.state().clone();
-        let page = page::page(&mut stepper, &state, None, &|| false, &mut |_| {});
+        let page = page::page(
+            &mut stepper,
+            &state,
+            (None, Vec::new()),
+            &|| false,
+            &mut |_| {},
+        );
         let told = page.unwrap().lines().join("\n");
         assert!(told.contains("indefinite, perhaps by rounding"), "{told}");
         assert!(told.contains("semidefinite"), "{told}");

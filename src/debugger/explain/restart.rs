@@ -4,6 +4,7 @@
 use std::collections::HashSet;
 use std::ops::ControlFlow;
 use std::sync::Arc;
+use stickslip_core::model::MonitorQuantity;
 use stickslip_core::plane::distance;
 use stickslip_core::{
     Failure, Intervention, JudgedLaw, Model, Outcome, RunEnd, State, Status, Stepper, Until,
@@ -16,6 +17,9 @@ pub(super) const BUDGET: u64 = 4000;
 
 /// Distance up to which two nodes are at the same place, relative to the scene's length.
 const SAME: f64 = 1e-6;
+
+/// Distance between a contact point of a face and the next one, relative to the distance to the farthest node of the face.
+const NEXT: f64 = 0.25;
 
 /// How a trial ended.
 #[derive(Debug, Clone, PartialEq)]
@@ -88,16 +92,39 @@ pub fn changed(spec: &Spec, state: &State, changes: &[(String, String)]) -> Opti
     Some(stepper)
 }
 
-/// Whether a finer mesh has slave nodes, supports and loads wherever the other mesh has them. A name such as `beam.3` is that of
+/// Whether a finer mesh has slave nodes, contact points of faces, supports, loads and monitors wherever the other mesh has them. A name such as `beam.3` is that of
 /// another node on a finer mesh.
 pub fn is_refined(finer: &Model, mesh: &Model) -> bool {
-    let finer = roles(finer);
+    let (finer_model, finer) = (finer, roles(finer));
     let near = SAME * mesh.length;
     let is_kept = |(role, at): &(Role, [f64; 2])| {
         let mut own = finer.iter().filter(|(own, _)| own == role);
         own.any(|(_, own)| distance(*own, *at) <= near)
     };
-    roles(mesh).iter().all(is_kept)
+    roles(mesh).iter().all(is_kept) && has_faces(finer_model, mesh)
+}
+
+/// Whether every contact point of a face lies next to one on the finer mesh, whose points on a face are closer than a quarter of it.
+fn has_faces(finer: &Model, mesh: &Model) -> bool {
+    let points = |model: &Model| {
+        let contacts = model.contacts.iter().filter(|c| !c.weights.is_empty());
+        let place = |node: usize| model.nodes[node].at;
+        let points = contacts.map(|contact| {
+            let at = place(contact.node);
+            let carriers = contact
+                .carriers()
+                .map(|(node, _)| distance(place(node), at));
+            (at, carriers.fold(0.0, f64::max))
+        });
+        points.collect::<Vec<_>>()
+    };
+    let finer = points(finer);
+    let is_near = |at: [f64; 2]| {
+        finer
+            .iter()
+            .any(|(own, reach)| distance(*own, at) <= NEXT * reach)
+    };
+    points(mesh).iter().all(|(at, _)| is_near(*at))
 }
 
 /// What a scene does with a node.
@@ -108,6 +135,8 @@ enum Role {
     Restrained(usize),
     /// Loads this component.
     Loaded(usize),
+    /// Has a monitor with this name: on this component, or on the contact.
+    Monitored(String, Option<usize>),
 }
 
 /// The nodes that a scene does something with: what, and where in the undeformed mesh.
@@ -116,17 +145,38 @@ fn roles(model: &Model) -> Vec<(Role, [f64; 2])> {
     for contact in model.contacts.iter().filter(|c| c.weights.is_empty()) {
         all.push((Role::Slave, model.nodes[contact.node].at));
     }
+    // Contact points of faces have no unknowns.
+    let points = model.contacts.iter().filter(|c| !c.weights.is_empty());
+    let points: HashSet<usize> = points.map(|contact| contact.node).collect();
     let loaded: HashSet<usize> = model.loads.iter().map(|load| load.dof).collect();
     for (dof, equation) in model.dofs.equation.iter().enumerate() {
         let Some((node, component)) = model.dofs.node_of(dof) else {
             continue;
         };
         let at = model.nodes[node].at;
-        if equation.is_none() {
+        if equation.is_none() && !points.contains(&node) {
             all.push((Role::Restrained(component), at));
         }
         if loaded.contains(&dof) {
             all.push((Role::Loaded(component), at));
+        }
+    }
+    for monitor in &model.monitors {
+        let role = |component| Role::Monitored(monitor.name.clone(), component);
+        match &monitor.of {
+            MonitorQuantity::Displacement { dof } | MonitorQuantity::Reaction { dof } => {
+                let node = model.dofs.node_of(*dof);
+                all.extend(node.map(|(node, c)| (role(Some(c)), model.nodes[node].at)));
+            }
+            MonitorQuantity::Contact { slaves, .. }
+            | MonitorQuantity::Modes { slaves, .. }
+            | MonitorQuantity::Drift { slaves }
+            | MonitorQuantity::Pressure { slaves, .. } => {
+                let contacts = slaves.iter().map(|&slave| &model.contacts[slave]);
+                let nodes = contacts.filter(|contact| contact.weights.is_empty());
+                all.extend(nodes.map(|contact| (role(None), model.nodes[contact.node].at)));
+            }
+            MonitorQuantity::Reported { .. } | MonitorQuantity::Arc => {}
         }
     }
     all

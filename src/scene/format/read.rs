@@ -176,11 +176,14 @@ pub fn text(file: &str) -> Result<String, SceneError> {
         .map_err(|error| unread(file, error))
 }
 
+/// How a message about a scene file that is no text ends.
+pub(crate) const WRITTEN: &str = "; a scene is written in RON";
+
 /// Error for a scene file that cannot be read.
 pub fn unread(file: &str, error: Unreadable) -> SceneError {
     let mut error = not_read(file, &error);
     if error.at.is_some() {
-        error.message += &format!("; {}", crate::readers::is_written_in(file));
+        error.message += WRITTEN;
     }
     error
 }
