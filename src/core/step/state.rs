@@ -313,13 +313,15 @@ impl State {
         state
     }
 
-    /// The fallbacks that may change the settings: that of the current increment, and the contact geometry once it has helped.
+    /// The fallbacks that change the settings: that of the current increment, and the contact geometry once it has helped.
     pub fn fallbacks(&self) -> impl Iterator<Item = Fallback> {
+        let chosen = self.controls.settings;
         let current = self.recovery.fallback.map(|route| route.by);
         let searched = self.record.searched.geometry && current != Some(Fallback::Geometry);
         current
             .into_iter()
             .chain(searched.then_some(Fallback::Geometry))
+            .filter(move |by| by.in_force(chosen) != chosen)
     }
 
     /// The settings in force: with the strategy of the current rung, its update of T_max, and the changes of a fallback.
