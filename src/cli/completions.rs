@@ -285,7 +285,7 @@ fn of_scene(words: &[OsString]) -> Option<Vec<ListedScalar>> {
         let name = word.to_str()?;
         let text = match builtin::find(name) {
             Some(scene) => scene.text.to_owned(),
-            None if Path::new(name).is_file() => read::text(name).ok()?,
+            None if Path::new(name).is_file() => read::text(name, read::SCENE).ok()?,
             None => return None,
         };
         Some(paths::list(&read::spec(name, &text).ok()?))

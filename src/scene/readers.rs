@@ -62,8 +62,12 @@ struct Reader {
     recognise: fn(&Start) -> bool,
     /// Reads it as a scene. `None` if it is none, or is read as RON.
     read: Option<ReadScene>,
-    /// Extensions of such files, if no other kind has them, and what a message calls the format.
-    extensions: (&'static [&'static str], &'static str),
+    /// Extensions of such files that no other kind has.
+    extensions: &'static [&'static str],
+    /// What a message calls the format of files with these extensions.
+    format: &'static str,
+    /// How files with these extensions begin, for kinds that are not read as a scene.
+    beginning: &'static str,
 }
 
 type ReadScene = fn(&Source) -> Result<Scene, SceneError>;
@@ -80,7 +84,9 @@ const fn file(
         command,
         recognise,
         read: None,
-        extensions: (&[], ""),
+        extensions: &[],
+        format: "",
+        beginning: "",
     }
 }
 
@@ -96,18 +102,23 @@ impl Reader {
     /// The reader of files with these extensions, whatever they begin with.
     const fn named(self, extensions: &'static [&'static str], format: &'static str) -> Reader {
         Reader {
-            extensions: (extensions, format),
+            extensions,
+            format,
             ..self
         }
     }
 
+    /// With the beginning of its files, for the message if a file with its name begins otherwise.
+    const fn beginning_with(self, beginning: &'static str) -> Reader {
+        Reader { beginning, ..self }
+    }
+
     /// The message for a file that has the name of its kind, but not its beginning.
-    fn damage(&self, name: &str) -> String {
-        let (format, own) = (self.extensions.1, self.kind.reader(name));
-        let own = own
-            .map(|own| format!("; `{own}` reads one"))
-            .unwrap_or_default();
-        format!("this is named like {format}, but does not begin like one{own}")
+    fn damage(&self) -> String {
+        format!(
+            "the name is that of {}, which begins with {}",
+            self.format, self.beginning
+        )
     }
 
     /// The reader of files with the extension of this one, if there is only one.
@@ -115,19 +126,20 @@ impl Reader {
         let extension = std::path::Path::new(name).extension()?.to_str()?;
         let is_own = |own: &&str| own.eq_ignore_ascii_case(extension);
         let mut readers = READERS.iter();
-        readers.find(|reader| reader.extensions.0.iter().any(is_own))
+        readers.find(|reader| reader.extensions.iter().any(is_own))
     }
 }
 
 /// All readers, in the order in which they are tried.
 #[rustfmt::skip]
 const READERS: [Reader; 19] = [
-    file(FileKind::Mesh, "a Gmsh mesh", "stickslip export {} -o SCENE.ron", |start| start.text.trim_start().starts_with("$MeshFormat")).named(&["msh"], "a Gmsh mesh"),
+    file(FileKind::Mesh, "a Gmsh mesh", "stickslip export {} -o SCENE.ron", |start| start.text.trim_start().starts_with("$MeshFormat")).named(&["msh"], "a Gmsh mesh").beginning_with("$MeshFormat"),
     file(FileKind::Results, "a file of stored results", "stickslip map SCENE --resume {}", |start| start.first.starts_with("stickslip ") && start.first.contains(" results, ")),
     file(FileKind::Exchange, "a stored exchange with an attached solver", "stickslip {}", |start| start.text.starts_with(conversation::HEAD)),
-    file(FileKind::Contacts, "the .cel file of a finished CalculiX run", "stickslip {}", |start| calculix::is_contacts(start.first)).named(&["cel"], "a .cel file of CalculiX"),
+    file(FileKind::Contacts, "the .cel file of a finished CalculiX run", "stickslip {}", |start| calculix::is_contacts(start.first)).named(&["cel"], "a .cel file of CalculiX")
+        .beginning_with("*ELEMENT,TYPE=…,ELSET=contactelements_…"),
     file(FileKind::Progress, "a table of a finished CalculiX run", "stickslip {}", |start| ["SUMMARY OF JOB INFORMATION", "SUMMARY OF C0NVERGENCE INFORMATION"].contains(&start.first))
-        .named(&["sta", "cvg"], "a .sta or .cvg file of CalculiX"),
+        .named(&["sta", "cvg"], "a .sta or .cvg file of CalculiX").beginning_with("SUMMARY OF"),
     file(FileKind::Cast, "a terminal recording of a session", "asciinema play {}", |start| start.first.starts_with("{\"version\"")),
     file(FileKind::ChartTable, "the table of a work-precision chart", "stickslip chart --from {}", |start| start.first.starts_with("scene,series,run,")),
     file(FileKind::Table, "a table of results", "", |start| {
@@ -292,19 +304,19 @@ impl Scene {
         if let Some(problem) = problems::opened::from_file(name, overrides) {
             return Scene::assemble(name, "", problem?.spec(), overrides, Vec::new());
         }
+        let wanted = match Reader::from_name(name) {
+            Some(named) => &format!("{} is plain text", named.format),
+            None => read::SCENE,
+        };
         let text = if deck::is_called_so(name) {
-            deck::text(std::path::Path::new(name)).map_err(|error| read::unread(name, error))
+            let text = deck::text(std::path::Path::new(name));
+            text.map_err(|error| read::unread(name, error, wanted))
         } else {
-            read::text(name)
+            read::text(name, wanted)
         };
         let text = text.map_err(|mut error| {
             if !disk::exists(name) {
                 error.message = no_such_scene(name);
-            }
-            if let Some(named) = Reader::from_name(name)
-                && let Some(why) = error.message.strip_suffix(read::WRITTEN)
-            {
-                error.message = format!("{why}; {} is plain text", named.extensions.1);
             }
             error
         })?;
@@ -354,7 +366,7 @@ impl Scene {
                 Some(read) => read(&source),
                 None => Err(SceneError {
                     at: Some((1, 1)),
-                    ..SceneError::whole(name, named.damage(name))
+                    ..SceneError::whole(name, named.damage())
                 }),
             };
         }

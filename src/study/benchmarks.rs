@@ -147,7 +147,8 @@ impl fmt::Display for Assessment {
 impl Benchmarks {
     /// Reads a list from a file, or the built-in list by its name; `None` if the file is something else.
     ///
-    /// # Errors If the list cannot be read, with line and column.
+    /// # Errors
+    /// If the list cannot be read, with line and column.
     pub fn open(name: &str) -> Result<Option<Benchmarks>, SceneError> {
         let path = Path::new(name);
         if !path.is_file() {
@@ -156,7 +157,7 @@ impl Benchmarks {
                 .then(|| Benchmarks::from_text(BUILTIN, builtin_text()))
                 .transpose();
         }
-        let text = file_text(name)?;
+        let text = file_text(name, "charts and scenes are written in RON")?;
         if !is_list(&text) {
             return Ok(None);
         }
@@ -170,7 +171,8 @@ impl Benchmarks {
 
     /// Parses a list; `name` is its name for messages.
     ///
-    /// # Errors If it cannot be read, with line and column, or is inconsistent.
+    /// # Errors
+    /// If it cannot be read, with line and column, or is inconsistent.
     pub fn from_text(name: &str, text: &str) -> Result<Benchmarks, SceneError> {
         let mut list: Benchmarks = from_ron(name, text, "list of benchmarks")?;
         (list.name, list.text) = (name.to_owned(), text.to_owned());
@@ -195,7 +197,8 @@ impl Benchmarks {
 
     /// Runs each combination of scene and settings once, and compares the results.
     ///
-    /// # Errors If a scene or a setting is invalid, or a monitor does not exist. The failure of a run is a
+    /// # Errors
+    /// If a scene or a setting is invalid, or a monitor does not exist. The failure of a run is a
     /// result.
     pub fn run(
         &self,

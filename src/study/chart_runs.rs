@@ -75,7 +75,8 @@ pub struct PlannedChart {
 impl PlannedChart {
     /// Plans the runs of a chart.
     ///
-    /// # Errors If a path or a value is invalid, or the reference table cannot be read.
+    /// # Errors
+    /// If a path or a value is invalid, or the reference table cannot be read.
     pub fn new(chart: Chart) -> Result<PlannedChart, RunError> {
         let lay_out = |vary: &[Vary], set: &[(String, String)]| {
             Plan::new(Study {

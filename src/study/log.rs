@@ -291,7 +291,8 @@ pub(super) fn broken(path: &Path, at: (usize, usize), message: &str) -> RunError
 
 /// Reads a log without changing it; another process may be writing to it.
 ///
-/// # Errors If it cannot be read, or belongs to something else.
+/// # Errors
+/// If it cannot be read, or belongs to something else.
 pub fn read<T: Outcome>(path: &Path, ours: &Input) -> Result<Content<T>, RunError> {
     let file = opened(path, File::options().read(true))?;
     Ok(content(&file, path, ours)?.0)
@@ -300,7 +301,8 @@ pub fn read<T: Outcome>(path: &Path, ours: &Input) -> Result<Content<T>, RunErro
 impl Log {
     /// Opens or creates a log, and reads its contents.
     ///
-    /// # Errors If it cannot be read or written, is something else, or is open in another run.
+    /// # Errors
+    /// If it cannot be read or written, is something else, or is open in another run.
     pub fn open<T: Outcome>(path: &Path, ours: &Input) -> Result<(Log, Content<T>), RunError> {
         let failed = RunError::system(path);
         let mut options = File::options();
@@ -332,7 +334,8 @@ impl Log {
 
     /// Appends a result, in one write.
     ///
-    /// # Errors If it cannot be written, or could not be read back.
+    /// # Errors
+    /// If it cannot be written, or could not be read back.
     pub fn keep<T: Outcome>(&self, key: Key, value: &T) -> Result<(), RunError> {
         if value.is_sound() {
             self.write(&key.to_string(), value)

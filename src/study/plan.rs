@@ -65,7 +65,8 @@ struct SceneData {
 impl Case {
     /// The scene with the settings of this case.
     ///
-    /// # Errors Never; the plan has checked all cases.
+    /// # Errors
+    /// Never; the plan has checked all cases.
     pub fn open(&self) -> Result<Scene, SceneError> {
         let settings: Vec<_> = self
             .of
@@ -84,7 +85,8 @@ impl Case {
 
     /// The model of the case, without parsing the scene again.
     ///
-    /// # Errors Never; the plan has checked all cases.
+    /// # Errors
+    /// Never; the plan has checked all cases.
     pub fn model(&self) -> Result<Model, SceneError> {
         let quick = self.placed().and_then(|set| self.of.base.model(&set));
         quick.map_or_else(|| Ok(self.open()?.model), Ok)
@@ -130,7 +132,8 @@ impl Case {
 impl Plan {
     /// Plans a study.
     ///
-    /// # Errors If a scene, a path or a value is invalid in any case, or the scenes do not have the quantity of
+    /// # Errors
+    /// If a scene, a path or a value is invalid in any case, or the scenes do not have the quantity of
     /// an axis.
     pub fn new(mut study: Study) -> Result<Plan, SceneError> {
         check_values(&mut study)?;

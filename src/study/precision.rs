@@ -159,7 +159,8 @@ struct MeasuredRun {
 
 /// Runs all cases of a chart, one at a time.
 ///
-/// # Errors As [`Precision::new`], and if a scene cannot be opened.
+/// # Errors
+/// As [`Precision::new`], and if a scene cannot be opened.
 pub fn run(planned: &PlannedChart, measure: Measure, watch: &Watch) -> Result<Precision, RunError> {
     let sweep = sweep(std::slice::from_ref(planned), measure.repeats);
     let results = sweep.run(NonZeroUsize::MIN, watch)?;
@@ -452,7 +453,8 @@ pub(super) fn mark_front(points: &mut [Point], cost: Cost) {
 impl Precision {
     /// A chart of the completed runs, in the order of [`sweep`].
     ///
-    /// # Errors If the reference is not suitable.
+    /// # Errors
+    /// If the reference is not suitable.
     pub fn new(
         planned: &PlannedChart,
         results: Vec<Option<TimedRun>>,

@@ -29,7 +29,8 @@ pub fn open(file: &Path) -> Result<String, SceneError> {
 /// Parses charts from a table as written by [`csv`](fn@csv). Only the columns `scene`, `series`, `run`,
 /// `status`, `error` and `seconds` are required, and the runs may come from other programs.
 ///
-/// # Errors If it cannot be read; the message has file, line and column.
+/// # Errors
+/// If it cannot be read; the message has file, line and column.
 pub fn read(
     name: &str,
     text: &str,

@@ -62,7 +62,8 @@ impl Vary {
     /// spaced values, including the ends, `0.01..0.1/4log` for four in constant ratio. `2x` is twice the
     /// scene's value (computed by the plan).
     ///
-    /// # Errors If the text does not have this form.
+    /// # Errors
+    /// If the text does not have this form.
     pub fn parse(text: &str) -> Result<Vary, String> {
         let Some((path, values)) = text.split_once('=') else {
             return Err("expected PATH=A,B,C, such as history.increment=0.01,0.02".to_owned());
@@ -171,10 +172,11 @@ impl Study {
 
     /// Opens a study file, a built-in study, or a scene to be varied; a file takes precedence.
     ///
-    /// # Errors If nothing has this name, or the study cannot be read. Scenes are not read yet.
+    /// # Errors
+    /// If nothing has this name, or the study cannot be read. Scenes are not read yet.
     pub fn open(name: &str) -> Result<Study, SceneError> {
         if std::path::Path::new(name).exists() {
-            let text = text(name)?;
+            let text = text(name, "studies and scenes are written in RON")?;
             return if is_study(&text) {
                 Study::from_text(name, &text)?.open_scenes(name)
             } else {

@@ -56,7 +56,8 @@ static TABLES: &[EmbeddedFile] = embedded_all![
 impl Reference {
     /// The built-in reference for a scene; `path` is the scene's load path.
     ///
-    /// # Errors Never for the built-in tables (checked by tests).
+    /// # Errors
+    /// Never for the built-in tables (checked by tests).
     pub fn builtin(scene: &str, path: &[f64]) -> Option<Result<Reference, SceneError>> {
         let table = TABLES.iter().find(|table| table.name == scene)?;
         Some(Reference::read(
@@ -68,7 +69,8 @@ impl Reference {
 
     /// Reads a table from a file.
     ///
-    /// # Errors If it cannot be read; the message has file, line and column.
+    /// # Errors
+    /// If it cannot be read; the message has file, line and column.
     pub fn open(file: &Path, path: &[f64]) -> Result<Reference, SceneError> {
         let name = file.display().to_string();
         let text = input::text(file, TABLE_BYTES, "too large for a reference table")

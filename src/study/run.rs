@@ -43,7 +43,8 @@ pub(super) fn cells<'a, T: 'a>(
 
 /// Runs all cases of a plan on some threads. The results are in the order of the plan.
 ///
-/// # Errors If the threads cannot be started. The failure of a run is a result.
+/// # Errors
+/// If the threads cannot be started. The failure of a run is a result.
 pub fn run(plan: &Plan, jobs: NonZeroUsize, watch: &Watch) -> Result<Vec<Run>, RunError> {
     let runs = sweep(plan).run(jobs, watch)?;
     Ok(runs.into_iter().flatten().collect())

@@ -81,7 +81,8 @@ pub struct MissingCells {
 
 /// Computes results in parallel, each on one thread, and returns them in order.
 ///
-/// # Errors If the threads cannot be started, or a result is an error.
+/// # Errors
+/// If the threads cannot be started, or a result is an error.
 pub fn side_by_side<T: Send>(
     jobs: NonZeroUsize,
     count: usize,
@@ -100,7 +101,8 @@ pub fn side_by_side<T: Send>(
 impl<T: Outcome> Sweep<'_, T> {
     /// Computes all cells without storing results.
     ///
-    /// # Errors If the threads cannot be started, or a scene is invalid. The failure of a run is a result.
+    /// # Errors
+    /// If the threads cannot be started, or a scene is invalid. The failure of a run is a result.
     pub fn run(&self, jobs: NonZeroUsize, watch: &Watch) -> Result<Vec<Option<T>>, RunError> {
         let store = Store::open(&ResultStorage::Log(None, Shard::WHOLE), self)?;
         self.run_with(&store, jobs, watch)
@@ -108,7 +110,8 @@ impl<T: Outcome> Sweep<'_, T> {
 
     /// Computes the cells of this shard that have no result yet; `None` for the others.
     ///
-    /// # Errors As [`Sweep::run`], and if a result cannot be stored or belongs to another sweep.
+    /// # Errors
+    /// As [`Sweep::run`], and if a result cannot be stored or belongs to another sweep.
     pub fn run_with(
         &self,
         store: &Store<T>,
@@ -164,7 +167,8 @@ impl<T: Outcome> Sweep<'_, T> {
 impl<T: Outcome> Store<T> {
     /// Opens the existing results.
     ///
-    /// # Errors If a file cannot be read or written, belongs to another sweep, or contradicts another one.
+    /// # Errors
+    /// If a file cannot be read or written, belongs to another sweep, or contradicts another one.
     pub fn open(keeping: &ResultStorage, sweep: &Sweep<'_, T>) -> Result<Store<T>, RunError> {
         let mut store = Store {
             found: HashMap::new(),

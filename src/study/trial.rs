@@ -135,7 +135,8 @@ fn settings(variant: &Variant) -> Vec<(String, String)> {
 
 /// Tries one problem of a population with all variants; `None` if `stop` returns true.
 ///
-/// # Errors If a variant's settings are invalid.
+/// # Errors
+/// If a variant's settings are invalid.
 pub fn try_variants(
     population: &Population,
     k: usize,

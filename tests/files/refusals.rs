@@ -595,12 +595,14 @@ fn a_damaged_beginning_is_refused_as_the_format_of_the_name() {
             let why = Scene::open(file.to_str().unwrap(), &[])
                 .unwrap_err()
                 .to_string();
-            let other = why.contains("a scene is") || why.contains("round brackets");
+            let found = format!("{name}, {:?}: {why}", String::from_utf8_lossy(&bytes));
             assert!(
-                !other,
-                "{name}, {:?}: {why}",
-                String::from_utf8_lossy(&bytes)
+                !why.contains("a scene is") && !why.contains("round brackets"),
+                "{found}"
             );
+            assert!(why.contains(&format!("{name}:")), "{found}");
+            let no_text = std::str::from_utf8(&bytes).is_err() && name != "w.inp";
+            assert_eq!(why.contains("is plain text"), no_text, "{found}");
         }
     }
     // A scene is read as one, whatever its name.

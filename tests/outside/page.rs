@@ -47,7 +47,8 @@ pub fn check(scene: &Scene) -> Option<CheckedPage> {
     let made = page(
         &mut stepper,
         &state,
-        (Some(&scene.spec), Vec::new()),
+        Some(&scene.spec),
+        Vec::new(),
         &|| false,
         &mut |_| {},
     );

@@ -302,7 +302,8 @@ fn the_law_of_an_inverted_element_is_the_first_that_is_tried_and_helps() {
     let found = page::page(
         &mut run.stepper,
         &state,
-        (spec, Vec::new()),
+        spec,
+        Vec::new(),
         &|| false,
         &mut |_| {},
     )

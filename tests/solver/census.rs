@@ -193,7 +193,8 @@ fn a_count_and_a_page_that_are_stopped_keep_what_was_found_and_say_that_it_is_no
     let whole = page(
         &mut stepper,
         &state,
-        (None, Vec::new()),
+        None,
+        Vec::new(),
         &|| true,
         &mut |_| parts += 1,
     );

@@ -170,7 +170,8 @@ fn a_matrix_that_is_indefinite_by_rounding_is_solved_once_it_is_made_semidefinit
         let page = page::page(
             &mut stepper,
             &state,
-            (None, Vec::new()),
+            None,
+            Vec::new(),
             &|| false,
             &mut |_| {},
         );

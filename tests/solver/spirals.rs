@@ -205,13 +205,7 @@ fn page_of(failed: common::Run) -> Vec<String> {
     let mut stepper = failed.stepper;
     let state = stepper.state().clone();
     let mut seen = |_: &_| ();
-    let page = page::page(
-        &mut stepper,
-        &state,
-        (None, Vec::new()),
-        &|| false,
-        &mut seen,
-    );
+    let page = page::page(&mut stepper, &state, None, Vec::new(), &|| false, &mut seen);
     page.unwrap().lines()
 }
 

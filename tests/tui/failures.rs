@@ -201,7 +201,8 @@ fn a_state_that_the_judge_refuses_has_a_page_with_the_law_the_node_and_what_is_a
     let found = page(
         &mut stepper,
         &state,
-        (spec, Vec::new()),
+        spec,
+        Vec::new(),
         &|| false,
         &mut |_| {},
     )

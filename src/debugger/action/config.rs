@@ -95,7 +95,8 @@ pub fn folder() -> Option<PathBuf> {
 impl Config {
     /// Reads the files in the user's folder.
     ///
-    /// # Errors If an existing file cannot be read or is invalid.
+    /// # Errors
+    /// If an existing file cannot be read or is invalid.
     pub fn open() -> Result<Config, SceneError> {
         match folder() {
             Some(folder) => Config::from(&folder),
@@ -105,7 +106,8 @@ impl Config {
 
     /// Reads the files in a folder.
     ///
-    /// # Errors If an existing file cannot be read or is invalid.
+    /// # Errors
+    /// If an existing file cannot be read or is invalid.
     pub fn from(folder: &Path) -> Result<Config, SceneError> {
         let mut config = Config::default();
         if let Some((file, text)) = text(&folder.join(DEBUGGER))? {
@@ -135,7 +137,11 @@ fn text(path: &Path) -> Result<Option<(String, String)>, SceneError> {
     }
     match input::text(path, MOST, "too large for a configuration file") {
         Ok(text) => Ok(Some((file, text))),
-        Err(why) => Err(read::unread(&file, why)),
+        Err(why) => Err(read::unread(
+            &file,
+            why,
+            "a configuration is written in RON",
+        )),
     }
 }
 

@@ -75,7 +75,8 @@ impl<'de> Deserialize<'de> for KeysFile {
 impl Keymap {
     /// Reads the key bindings from the text of a file.
     ///
-    /// # Errors If the text cannot be parsed, an action or key is unknown, or two actions share a key.
+    /// # Errors
+    /// If the text cannot be parsed, an action or key is unknown, or two actions share a key.
     pub fn read(file: &str, text: &str) -> Result<Keymap, SceneError> {
         let KeysFile(written) = read::value(file, text, "list of keys")?;
         let wrong = |byte: usize, path: &Path, message: String| SceneError {

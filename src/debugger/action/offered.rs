@@ -158,7 +158,8 @@ impl Need {
 impl ActionEntry {
     /// Whether the current solver supports this action, without arguments.
     ///
-    /// # Errors The reason why not.
+    /// # Errors
+    /// The reason why not.
     pub fn offered(&self, context: &Context) -> Result<(), String> {
         Need::from_verb(&self.verb).map_or(Ok(()), |need| need.check(context.offers))
     }
@@ -167,7 +168,8 @@ impl ActionEntry {
 impl Action {
     /// Whether the current solver supports this action, and it changes something.
     ///
-    /// # Errors The reason why not.
+    /// # Errors
+    /// The reason why not.
     pub fn offered(&self, context: &Context) -> Result<(), String> {
         if let Action::Session(Command::Release { slave }) = self {
             released(*slave, context)?;

@@ -210,7 +210,8 @@ fn counted(
 /// if there is no cycle. The problem's states are at the start of the cycle. A large problem is stepped to its
 /// cycle and reduced to the nodes that take part.
 ///
-/// # Errors If it is unknown whether there is a cycle.
+/// # Errors
+/// If it is unknown whether there is a cycle.
 pub fn going_round(
     stepper: &mut Stepper,
     state: &State,

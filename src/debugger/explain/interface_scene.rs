@@ -65,7 +65,8 @@ fn id(name: &str, place: usize) -> String {
 
 /// The scene of a reported problem, and our solver at its start.
 ///
-/// # Errors If the problem is invalid.
+/// # Errors
+/// If the problem is invalid.
 pub fn stepper(problem: Problem) -> Result<(Scene, Stepper), SceneError> {
     let scene = Scene::from_spec("the interface problem", problem.spec())?;
     let stepper = Stepper::new(Arc::new(scene.model.clone()));

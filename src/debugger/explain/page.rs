@@ -39,12 +39,13 @@ const MOST_STATES: usize = 4;
 /// Maximum number of remedies tried for the page; the list of remedies tries all.
 const MOST_TRIED: usize = 6;
 
-/// Makes the page of a state. `spec` is the scene as written by its author, from which a finer mesh is
-/// generated; `warnings` are those of the run up to a failed state; calls `tell` as the page grows. `None` if interrupted.
+/// Makes the page of a state. A finer mesh is generated from `spec`, the scene as its author wrote it. The page of a failed state
+/// lists the `warnings` of the run before it. `tell` is called with each version of the page. `None` if interrupted.
 pub fn page(
     stepper: &mut Stepper,
     state: &State,
-    (spec, warnings): (Option<&Spec>, Vec<String>),
+    spec: Option<&Spec>,
+    warnings: Vec<String>,
     stop: &dyn Fn() -> bool,
     tell: &mut dyn FnMut(&DiagnosisPage),
 ) -> Option<DiagnosisPage> {

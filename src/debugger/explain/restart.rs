@@ -92,16 +92,16 @@ pub fn changed(spec: &Spec, state: &State, changes: &[(String, String)]) -> Opti
     Some(stepper)
 }
 
-/// Whether a finer mesh has slave nodes, contact points of faces, supports, loads and monitors wherever the other mesh has them. A name such as `beam.3` is that of
-/// another node on a finer mesh.
+/// Whether a finer mesh has slave nodes, contact points of faces, supports, loads and monitors wherever the other mesh has them. A
+/// name such as `beam.3` is that of another node on a finer mesh.
 pub fn is_refined(finer: &Model, mesh: &Model) -> bool {
-    let (finer_model, finer) = (finer, roles(finer));
+    let found = roles(finer);
     let near = SAME * mesh.length;
     let is_kept = |(role, at): &(Role, [f64; 2])| {
-        let mut own = finer.iter().filter(|(own, _)| own == role);
+        let mut own = found.iter().filter(|(own, _)| own == role);
         own.any(|(_, own)| distance(*own, *at) <= near)
     };
-    roles(mesh).iter().all(is_kept) && has_faces(finer_model, mesh)
+    roles(mesh).iter().all(is_kept) && has_faces(finer, mesh)
 }
 
 /// Whether every contact point of a face lies next to one on the finer mesh, whose points on a face are closer than a quarter of it.

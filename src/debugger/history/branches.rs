@@ -30,7 +30,8 @@ pub fn name(tree: &Tree, branch: usize) -> String {
 
 /// Finds a branch by number (`b2`), label, whole name, or a unique prefix of its label.
 ///
-/// # Errors If none or several match; the message lists the branches.
+/// # Errors
+/// If none or several match; the message lists the branches.
 pub fn find(tree: &Tree, word: &str) -> Result<usize, Refusal> {
     let all = 0..tree.branches().len();
     let label = |b: usize| tree.branches()[b].label.as_str();

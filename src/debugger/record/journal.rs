@@ -152,7 +152,8 @@ pub struct Journal {
 impl Journal {
     /// Creates the journal of a session, with the entries so far. The file is readable by its owner only.
     ///
-    /// # Errors If the file exists or cannot be written. No incomplete file is left behind.
+    /// # Errors
+    /// If the file exists or cannot be written. No incomplete file is left behind.
     pub fn create(path: &Path, scene: &Scene, done: &[Entry]) -> Result<Journal, JournalError> {
         let mut options = File::options();
         options.append(true).create_new(true);
@@ -198,7 +199,8 @@ impl Journal {
 
     /// Creates a journal in the user's folder for journals, named after the scene and the time.
     ///
-    /// # Errors If there is no such folder, or the file cannot be written.
+    /// # Errors
+    /// If there is no such folder, or the file cannot be written.
     pub fn create_default(scene: &Scene) -> Result<Journal, JournalError> {
         let directory = directory()?;
         disk::create_dir_all(&directory).map_err(|e| failure(&directory, e))?;
@@ -371,7 +373,8 @@ impl Record {
 
     /// The scene of the journal.
     ///
-    /// # Errors If this version rejects it.
+    /// # Errors
+    /// If this version rejects it.
     pub fn scene(&self) -> Result<Scene, JournalError> {
         let header = &self.header;
         Scene::from_spec(&header.name, header.scene.clone()).map_err(|source| JournalError::Scene {
@@ -457,14 +460,16 @@ pub(super) fn numbered(stem: &str, number: u32, extension: &str) -> String {
 
 /// Default folder for journals: in the user's folder for state, or for data on systems without one.
 ///
-/// # Errors If the system has no home directory.
+/// # Errors
+/// If the system has no home directory.
 pub fn directory() -> Result<PathBuf, JournalError> {
     Ok(home()?.join("journals"))
 }
 
 /// The program's folder for journals and lesson progress.
 ///
-/// # Errors If the system has no home directory.
+/// # Errors
+/// If the system has no home directory.
 pub fn home() -> Result<PathBuf, JournalError> {
     system::state_folder().ok_or(JournalError::NoPlace)
 }

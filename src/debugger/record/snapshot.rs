@@ -189,7 +189,8 @@ impl Snapshot {
 
     /// The snapshot as text.
     ///
-    /// # Errors If it cannot be represented in RON; no such snapshot is known.
+    /// # Errors
+    /// If it cannot be represented in RON; no such snapshot is known.
     pub fn to_text(&self) -> Result<String, SnapshotError> {
         let layout = ron::ser::PrettyConfig::new()
             .new_line("\n")
@@ -209,7 +210,8 @@ impl Snapshot {
 
     /// Reads a snapshot from a file.
     ///
-    /// # Errors If the file cannot be read, is damaged, or has an unknown format.
+    /// # Errors
+    /// If the file cannot be read, is damaged, or has an unknown format.
     pub fn read(path: &Path) -> Result<Snapshot, SnapshotError> {
         let file = path.display().to_string();
         let text = input::text(path, RECORD_BYTES, "too large for a snapshot")
@@ -219,7 +221,8 @@ impl Snapshot {
 
     /// Reads a snapshot from text; `file` is its name for messages.
     ///
-    /// # Errors If the text is damaged, or has an unknown format.
+    /// # Errors
+    /// If the text is damaged, or has an unknown format.
     pub fn from_text(file: &str, text: &str) -> Result<Snapshot, SnapshotError> {
         let text = text.strip_prefix(input::MARK).unwrap_or(text);
         let read = || {
@@ -238,7 +241,8 @@ impl Snapshot {
 
     /// Recomputes the snapshot from the start of its scene.
     ///
-    /// # Errors If the scene is invalid, or the run does not get that far.
+    /// # Errors
+    /// If the scene is invalid, or the run does not get that far.
     pub fn replay(&self) -> Result<Snapshot, SnapshotError> {
         if self.scene.attached.is_some() {
             let name = self.name.clone();
@@ -250,7 +254,8 @@ impl Snapshot {
 
     /// Recomputes the snapshot with an attached solver, from its start.
     ///
-    /// # Errors As [`Snapshot::replay`]; also if the solver has another scene or cannot continue.
+    /// # Errors
+    /// As [`Snapshot::replay`]; also if the solver has another scene or cannot continue.
     pub fn replay_with(&self, solver: &mut dyn Solver) -> Result<Snapshot, SnapshotError> {
         let scene = Scene::from_spec(&self.name, self.scene.clone())?;
         if scene.model != **solver.model() {

@@ -8,7 +8,8 @@ use stickslip_scene::few;
 
 /// The text of a journal.
 ///
-/// # Errors If this version rejects the journal's scene.
+/// # Errors
+/// If this version rejects the journal's scene.
 pub fn story(record: &Record) -> Result<String, JournalError> {
     let model = record.scene()?.model;
     let header = &record.header;

@@ -73,7 +73,8 @@ pub fn file(name: &str) -> Option<Result<OpenedExchange, SceneError>> {
 
 /// Reads a stored exchange; `name` is that of the file.
 ///
-/// # Errors If it is damaged.
+/// # Errors
+/// If it is damaged.
 pub fn open(name: &str, text: &str) -> Result<OpenedExchange, SceneError> {
     let kept = TranscriptLine::read(text).map_err(|broken| read::of_file(name, broken))?;
     let log = Log::default();

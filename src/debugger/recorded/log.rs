@@ -68,7 +68,8 @@ struct LogContents {
 impl Log {
     /// Stores the exchange in a file from now on.
     ///
-    /// # Errors If the file exists and may not be overwritten, or cannot be written.
+    /// # Errors
+    /// If the file exists and may not be overwritten, or cannot be written.
     pub fn keep(&self, path: &Path, overwrite: bool) -> std::io::Result<()> {
         let mut file = File::options()
             .write(true)

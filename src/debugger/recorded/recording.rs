@@ -15,7 +15,8 @@ pub enum Recording {
 impl Recording {
     /// Opens the recording with this file name; `None` if the name is not that of a recording.
     ///
-    /// # Errors If it is damaged, or belongs to a .cel.
+    /// # Errors
+    /// If it is damaged, or belongs to a .cel.
     pub fn open(name: &str) -> Result<Option<Recording>, String> {
         if let Some(cel) = cel_of(name) {
             let cel = shown::cut(&cel.display().to_string(), 120);

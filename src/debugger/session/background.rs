@@ -466,8 +466,8 @@ impl Helper {
             BackgroundRequest::Examination(place, state, nodes, reported) => {
                 self.borrow(&state);
                 let (stepper, spec) = self.solver();
-                let known = (spec, reported.findings);
-                examine(stepper, known, (place, &state, nodes), news, stop)
+                let warnings = reported.findings;
+                examine(stepper, spec, warnings, (place, &state, nodes), news, stop)
             }
             BackgroundRequest::Export(ask) => {
                 let done = if self.spec.is_none() && is_of_problem(&ask) {
@@ -545,7 +545,8 @@ impl Helper {
 /// Examines a state, for these nodes or, if there are none, for the relevant ones.
 fn examine(
     stepper: &mut Stepper,
-    known: (Option<&Spec>, Vec<String>),
+    spec: Option<&Spec>,
+    warnings: Vec<String>,
     (place, state, nodes): (LinePlace, &State, Vec<usize>),
     news: &Sender<BackgroundReply>,
     stop: &AtomicBool,
@@ -563,7 +564,8 @@ fn examine(
         [] => page(
             stepper,
             state,
-            known,
+            spec,
+            warnings,
             &stopped,
             // A closed channel is noticed after the last part.
             &mut |part| drop(send(Some(part.clone()), true)),

@@ -113,7 +113,8 @@ fn shown(stepper: &mut Stepper, ask: &Export, kind: &ExportKind) -> Result<Vec<V
 
 /// The scene with the core of the cycle of an interface problem that an attached solver reports.
 ///
-/// # Errors If there is no core, or it cannot be written.
+/// # Errors
+/// If there is no core, or it cannot be written.
 pub fn core_of_reported(
     model: &Model,
     state: &State,
@@ -132,7 +133,8 @@ pub fn core_of_reported(
 /// Writes the interface problem that an attached solver reports, or its core, possibly in another program's
 /// format.
 ///
-/// # Errors If it cannot be written.
+/// # Errors
+/// If it cannot be written.
 pub fn write_posed(model: &Model, posed: &ReportedProblem, ask: &Export) -> Result<(), Refusal> {
     if posed.tangents == 2 {
         return Err(Refusal::new(IN_SPACE));

@@ -11,7 +11,8 @@ use stickslip_scene::shown;
 impl Session {
     /// Repeats one entry of a journal.
     ///
-    /// # Errors If the result differs from the recorded one.
+    /// # Errors
+    /// If the result differs from the recorded one.
     fn replay(&mut self, entry: &Entry) -> Result<(), Refusal> {
         match &entry.command {
             // A journal must not be able to make the program write files.
@@ -75,7 +76,8 @@ impl Session {
 impl Record {
     /// Repeats all entries on the session's worker, and checks the bits of the state after each one.
     ///
-    /// # Errors If the scene is invalid, or at the first entry whose result differs.
+    /// # Errors
+    /// If the scene is invalid, or at the first entry whose result differs.
     pub fn replay(&self) -> Result<Session, JournalError> {
         self.replay_in(Session::new(self.scene()?), &mut |_, _| {})
     }
@@ -112,7 +114,8 @@ impl Record {
 impl JournalTarget {
     /// Starts the journal of a session.
     ///
-    /// # Errors If the named file exists or cannot be written.
+    /// # Errors
+    /// If the named file exists or cannot be written.
     pub fn begin(&self, session: &mut Session) -> Result<(), JournalError> {
         match self {
             JournalTarget::Nowhere => {}

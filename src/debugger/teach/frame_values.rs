@@ -71,7 +71,8 @@ const DOUBLING: f64 = 1.5;
 impl IncrementEnd {
     /// Whether the residuals near the solution converge quadratically rather than linearly.
     ///
-    /// # Errors If none are near the solution.
+    /// # Errors
+    /// If none are near the solution.
     pub fn is_quadratic(&self) -> Result<bool, Refusal> {
         let mut pairs = self
             .residuals
@@ -88,7 +89,8 @@ impl IncrementEnd {
 impl FrameValues {
     /// The frame after this many more minor iterations.
     ///
-    /// # Errors If the history ends earlier.
+    /// # Errors
+    /// If the history ends earlier.
     pub fn ahead(&self, minors: u32) -> Result<FrameValues, Refusal> {
         let mut look = self.clone();
         if minors == 0 {
@@ -108,7 +110,8 @@ impl FrameValues {
 
     /// How this increment ends without interventions.
     ///
-    /// # Errors If it does not end within the limit.
+    /// # Errors
+    /// If it does not end within the limit.
     pub fn end(&self) -> Result<IncrementEnd, Refusal> {
         let mut stepper = self.stepper();
         let mut minors = 0;
@@ -148,7 +151,8 @@ impl FrameValues {
 
     /// The judge's verdict on the last accepted increment.
     ///
-    /// # Errors If no increment has been accepted.
+    /// # Errors
+    /// If no increment has been accepted.
     pub fn verdict(&self) -> Result<&Verdict, Refusal> {
         self.frame
             .state
@@ -160,7 +164,8 @@ impl FrameValues {
 
     /// The latest relative residual: after the major iteration if it ended here, otherwise before it.
     ///
-    /// # Errors If no iteration has been solved.
+    /// # Errors
+    /// If no iteration has been solved.
     pub fn residual(&self) -> Result<f64, Refusal> {
         let event = self.event()?;
         Ok(norms_after(&event.outcome)
@@ -171,7 +176,8 @@ impl FrameValues {
     /// The factor by which a sliding node's lagged T_max approaches the value for its pressure in the next
     /// solve, or departs from it.
     ///
-    /// # Errors If the node does not slide with a lagged T_max both now and after the next solve.
+    /// # Errors
+    /// If the node does not slide with a lagged T_max both now and after the next solve.
     pub fn lag(&self, slave: usize) -> Result<f64, Refusal> {
         let off = |look: &FrameValues| -> Result<f64, Refusal> {
             let record = look.record(slave)?;
@@ -188,7 +194,8 @@ impl FrameValues {
 
     /// The runs of the lesson's chart.
     ///
-    /// # Errors If the lesson has no chart.
+    /// # Errors
+    /// If the lesson has no chart.
     pub fn runs(&self) -> Result<&Runs, Refusal> {
         self.runs
             .as_deref()
@@ -197,7 +204,8 @@ impl FrameValues {
 
     /// The number of consistent states of the frozen problem of this major iteration.
     ///
-    /// # Errors If the bodies cannot be condensed, or there are too many nodes for a census.
+    /// # Errors
+    /// If the bodies cannot be condensed, or there are too many nodes for a census.
     pub fn answers(&self) -> Result<usize, Refusal> {
         let frozen = self.frozen()?;
         Ok(census(&frozen).map_err(Refusal::new)?.answers.len())
@@ -210,7 +218,8 @@ impl FrameValues {
 
     /// The condensed problem of the next minor iteration at a slave node.
     ///
-    /// # Errors If the bodies cannot be condensed, or a body is loose without contact.
+    /// # Errors
+    /// If the bodies cannot be condensed, or a body is loose without contact.
     pub fn interface(&self, slave: usize) -> Result<CondensedNode, Refusal> {
         let frozen = self.frozen()?;
         let condensed = || {
@@ -238,7 +247,8 @@ impl FrameValues {
     /// The load factor at which a slave node leaves its mode, by shorter and shorter increments: within a 10000th of the
     /// increment.
     ///
-    /// # Errors If the node keeps its mode to the end of the history, or an increment fails.
+    /// # Errors
+    /// If the node keeps its mode to the end of the history, or an increment fails.
     pub fn leaves(&self, slave: usize) -> Result<f64, Refusal> {
         let mut stepper = self.stepper();
         let mut state = self.frame.state.clone();
@@ -284,7 +294,8 @@ impl FrameValues {
 
     /// The last minor iteration.
     ///
-    /// # Errors If there is none.
+    /// # Errors
+    /// If there is none.
     pub fn event(&self) -> Result<&Event, Refusal> {
         let event = self.frame.event.as_deref();
         event.ok_or_else(|| refusal!("no iteration has been solved yet"))
@@ -292,7 +303,8 @@ impl FrameValues {
 
     /// The record of a slave node in it.
     ///
-    /// # Errors If there is none.
+    /// # Errors
+    /// If there is none.
     pub fn record(&self, slave: usize) -> Result<&ContactRecord, Refusal> {
         let record = self.event()?.nodes.get(slave);
         record.ok_or_else(|| refusal!("the solve failed before this was known"))

@@ -59,7 +59,8 @@ impl Guess {
     /// Checks whether an action is allowed: moving forward is not, while a decision is hidden. An intervention
     /// discards what was known about later frames.
     ///
-    /// # Errors If something has to be predicted first.
+    /// # Errors
+    /// If something has to be predicted first.
     pub fn permits(
         &mut self,
         action: &Action,
@@ -92,7 +93,8 @@ impl Guess {
     /// Takes a prediction of a slave node's next mode. Returns the decision in words, and whether the
     /// prediction was right.
     ///
-    /// # Errors If there is nothing to predict, or the word is not a mode.
+    /// # Errors
+    /// If there is nothing to predict, or the word is not a mode.
     pub fn predict(
         &mut self,
         model: &Model,

@@ -10,7 +10,8 @@ use stickslip_scene::shown;
 
 /// Writes the user's progress as a hand-in, named as the file without its extension. Returns the name.
 ///
-/// # Errors If the progress cannot be read, or the file cannot be written, or exists and `overwrite` is false.
+/// # Errors
+/// If the progress cannot be read, or the file cannot be written, or exists and `overwrite` is false.
 pub fn write(own: &Path, to: &Path, overwrite: bool) -> Result<String, ProgressError> {
     let mut progress = Progress::read(own)?;
     progress.name = to

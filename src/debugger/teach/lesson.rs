@@ -238,7 +238,8 @@ pub fn current_name(name: &str) -> &str {
 impl Lesson {
     /// Opens a lesson file, or a built-in lesson by name; a file takes precedence.
     ///
-    /// # Errors If there is no such lesson, or it does not match its scene: one message, with line and column.
+    /// # Errors
+    /// If there is no such lesson, or it does not match its scene: one message, with line and column.
     pub fn open(name: &str) -> Result<Lesson, SceneError> {
         let (name, text) = text_of(name)?;
         Lesson::from_text(&name, &text)
@@ -316,7 +317,7 @@ fn text_of(name: &str) -> Result<(Cow<'_, str>, Cow<'static, str>), SceneError> 
     {
         return Ok((builtin.name.into(), builtin.text.into()));
     }
-    let text = read::text(name).map_err(|mut error| {
+    let text = read::text(name, "a lesson is written in RON").map_err(|mut error| {
         if !disk::exists(name) {
             let names = || LESSONS.iter().map(|lesson| lesson.name);
             error.message = format!(
@@ -344,7 +345,7 @@ fn recorded(
     }
     let file = Scene::named_in(name, named)
         .map_err(|why| placed(name, text, &[], Fault::new(at!["scene"], why)))?;
-    let read = read::text(&file)?;
+    let read = read::text(&file, "an exchange is plain text")?;
     Ok(Some(Arc::new((file, read))))
 }
 

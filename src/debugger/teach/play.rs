@@ -36,7 +36,8 @@ pub struct AnsweredQuestion {
 
 /// Plays a lesson with the right keys and answers.
 ///
-/// # Errors For the first step that cannot be completed, with its line and column.
+/// # Errors
+/// For the first step that cannot be completed, with its line and column.
 pub fn play(lesson: &Arc<Lesson>) -> Result<Vec<AnsweredQuestion>, SceneError> {
     let mut session = session(lesson);
     let mut tutor = Tutor::new(lesson.clone(), session.cursor(), session.frame());

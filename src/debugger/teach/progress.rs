@@ -101,7 +101,8 @@ pub fn place() -> Option<PathBuf> {
 impl Progress {
     /// Reads a file; a missing file means no progress.
     ///
-    /// # Errors If the file exists and cannot be read.
+    /// # Errors
+    /// If the file exists and cannot be read.
     pub fn read(file: &Path) -> Result<Progress, ProgressError> {
         if !disk::exists(file) {
             return Ok(Progress::default());
@@ -145,7 +146,8 @@ impl Progress {
 
     /// Writes it to a file; `overwrite` allows replacing an existing one.
     ///
-    /// # Errors If the file cannot be written, or exists and must stay.
+    /// # Errors
+    /// If the file cannot be written, or exists and must stay.
     pub(super) fn write(&self, file: &Path, overwrite: bool) -> Result<(), ProgressError> {
         let text = notation::lines(self, ron::ser::PrettyConfig::new()).map_err(|e| {
             ProgressError::Damaged {
@@ -229,7 +231,8 @@ impl ProgressStore {
 
     /// Saves the state of a lesson if its step has changed.
     ///
-    /// # Errors As [`keep`]. After an error nothing more is saved, so that it is reported only once.
+    /// # Errors
+    /// As [`keep`]. After an error nothing more is saved, so that it is reported only once.
     pub fn follow(&mut self, tutor: &Tutor) -> Result<(), ProgressError> {
         let here = Some((tutor.lesson().name.clone(), tutor.at()));
         let Some(file) = &self.file else {
@@ -250,7 +253,8 @@ impl ProgressStore {
 /// Saves the state of a lesson if it improved. Reads the file first, because other sessions may have changed
 /// it.
 ///
-/// # Errors If the file cannot be read or written. The file is replaced completely or stays unchanged.
+/// # Errors
+/// If the file cannot be read or written. The file is replaced completely or stays unchanged.
 pub fn keep(file: &Path, tutor: &Tutor) -> Result<(), ProgressError> {
     let mut progress = Progress::read(file)?;
     if !progress.take(tutor) {

@@ -124,7 +124,8 @@ stickslip_core::words! {
 impl LessonQuantity {
     /// Parses a quantity: `F_n beam.end`, `load`.
     ///
-    /// # Errors If the quantity or its node is unknown.
+    /// # Errors
+    /// If the quantity or its node is unknown.
     pub fn read(text: &str, context: &Context) -> Result<LessonQuantity, Refusal> {
         let (word, rest) = text.split_once(' ').unwrap_or((text, ""));
         let rest = rest.trim();
@@ -153,7 +154,8 @@ impl LessonQuantity {
 
     /// Its value, if it is a number.
     ///
-    /// # Errors If it is not a number or not known.
+    /// # Errors
+    /// If it is not a number or not known.
     pub fn number(&self, look: &FrameValues) -> Result<f64, Refusal> {
         match self {
             Of(nodal, slave) => nodal.number(*slave, look),
@@ -302,7 +304,8 @@ fn whole_number(whole: SolveQuantity, look: &FrameValues) -> Result<f64, Refusal
 
 /// Parses a quantity or a literal number.
 ///
-/// # Errors As [`LessonQuantity::read`], and if the quantity is not a number.
+/// # Errors
+/// As [`LessonQuantity::read`], and if the quantity is not a number.
 pub fn number(text: &str, context: &Context) -> Result<LessonQuantity, Refusal> {
     match text.trim().parse() {
         Ok(number) => Ok(Written(number)),
@@ -315,7 +318,8 @@ pub fn number(text: &str, context: &Context) -> Result<LessonQuantity, Refusal> 
 
 /// Parses the settings of a run: `PATH=VALUE PATH=VALUE`.
 ///
-/// # Errors If they cannot be parsed.
+/// # Errors
+/// If they cannot be parsed.
 pub fn settings(text: &str) -> Result<Vec<(String, String)>, Refusal> {
     let settings: Option<Vec<_>> = text
         .split_whitespace()
@@ -355,7 +359,8 @@ enum Piece {
 impl Template {
     /// Parses a text with quantities in braces. Line breaks become spaces, since the screen wraps.
     ///
-    /// # Errors For the first unknown quantity.
+    /// # Errors
+    /// For the first unknown quantity.
     pub fn read(text: &str, context: &Context) -> Result<Template, Refusal> {
         let mut pieces = Vec::new();
         let words: Vec<&str> = text.split_whitespace().collect();
@@ -392,7 +397,8 @@ impl Template {
 
     /// The text with the current values.
     ///
-    /// # Errors If a value is not known.
+    /// # Errors
+    /// If a value is not known.
     pub fn fill(&self, look: &FrameValues, right: &str) -> Result<String, Refusal> {
         self.0
             .iter()

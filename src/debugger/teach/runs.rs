@@ -30,7 +30,8 @@ impl Runs {
 
     /// Measures the runs, unless that has been done.
     ///
-    /// # Errors If a scene is invalid or the chart cannot be measured.
+    /// # Errors
+    /// If a scene is invalid or the chart cannot be measured.
     pub fn measure(&self) -> Result<&Precision, Refusal> {
         let measured = self.measured.get_or_init(|| {
             let mut chart = Chart::open(&self.scene, &self.over).map_err(|e| e.to_string())?;
@@ -54,7 +55,8 @@ impl Runs {
 
     /// The run with these settings.
     ///
-    /// # Errors If none or several match.
+    /// # Errors
+    /// If none or several match.
     pub fn of(&self, settings: &[(String, String)]) -> Result<&Point, Refusal> {
         let mut found = self.measure()?.points.iter().filter(|point| {
             let has =

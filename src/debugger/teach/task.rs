@@ -46,7 +46,8 @@ pub enum Goal {
 impl LessonTask {
     /// Checks the frames up to the shown one. Returns the reply if the goal is reached.
     ///
-    /// # Errors If it is reached with a forbidden aid, if it can no longer be reached, or if the reply has an unknown number.
+    /// # Errors
+    /// If it is reached with a forbidden aid, if it can no longer be reached, or if the reply has an unknown number.
     pub(super) fn check(
         &self,
         frames: &[Frame],

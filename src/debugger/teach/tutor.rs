@@ -249,7 +249,8 @@ impl Tutor {
     /// Checks whether an action is allowed now. Returns whether it is the one that the lesson waits for; then
     /// [`Tutor::settled`] or [`Tutor::failed`] must follow.
     ///
-    /// # Errors If the lesson waits for something else.
+    /// # Errors
+    /// If the lesson waits for something else.
     pub fn permits(
         &mut self,
         action: &Action,
@@ -331,7 +332,8 @@ impl Tutor {
 
     /// Continues, if the step only waits for that.
     ///
-    /// # Errors If the lesson waits for something else.
+    /// # Errors
+    /// If the lesson waits for something else.
     pub fn on(&mut self, cursor: usize, frame: &Frame) -> Result<(), Refusal> {
         match self.step() {
             None => Err(refusal!(
@@ -348,7 +350,8 @@ impl Tutor {
 
     /// Takes an answer, or a prediction for the selected node.
     ///
-    /// # Errors If there is no open question, or the word cannot be an answer.
+    /// # Errors
+    /// If there is no open question, or the word cannot be an answer.
     pub fn answer(
         &mut self,
         word: &str,
@@ -399,7 +402,8 @@ impl Tutor {
 
     /// Shows the hint of the question or task. It counts as a wrong answer.
     ///
-    /// # Errors If there is none.
+    /// # Errors
+    /// If there is none.
     pub fn hint(&mut self) -> Result<(), Refusal> {
         let text = match (self.lesson.steps.get(self.at), &mut self.question) {
             _ if self.done => {

@@ -169,21 +169,24 @@ fn expected(text: &str, error: &SpannedError, what: &str) -> Option<&'static str
     }
 }
 
-/// The text of a scene file.
-pub fn text(file: &str) -> Result<String, SceneError> {
+/// What a scene file that is no text should be.
+pub const SCENE: &str = "a scene is written in RON";
+
+/// The text of a file; `wanted` says what it should be, if it is no text.
+///
+/// # Errors
+/// If it cannot be read, or is no text.
+pub fn text(file: &str, wanted: &str) -> Result<String, SceneError> {
     let most = FILE_BYTES as u64;
     input::text(std::path::Path::new(file), most, "a scene is a page or two")
-        .map_err(|error| unread(file, error))
+        .map_err(|error| unread(file, error, wanted))
 }
 
-/// How a message about a scene file that is no text ends.
-pub(crate) const WRITTEN: &str = "; a scene is written in RON";
-
-/// Error for a scene file that cannot be read.
-pub fn unread(file: &str, error: Unreadable) -> SceneError {
+/// Error for a file that cannot be read, or is no text; then `wanted` says what it should be.
+pub fn unread(file: &str, error: Unreadable, wanted: &str) -> SceneError {
     let mut error = not_read(file, &error);
     if error.at.is_some() {
-        error.message += WRITTEN;
+        error.message += &format!("; {wanted}");
     }
     error
 }

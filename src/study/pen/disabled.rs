@@ -4,7 +4,8 @@ use super::drawn::{PlotError, Shape};
 
 /// Checks whether this build can draw.
 ///
-/// # Errors Always.
+/// # Errors
+/// Always.
 pub fn ready() -> Result<(), PlotError> {
     Err(PlotError::NotBuilt)
 }

@@ -18,7 +18,8 @@ pub fn mono() -> &'static [u8] {
 
 /// Checks whether this build can draw.
 ///
-/// # Errors If it cannot; never with the feature `plot`.
+/// # Errors
+/// If it cannot; never with the feature `plot`.
 pub fn ready() -> Result<(), PlotError> {
     Ok(())
 }

@@ -85,7 +85,8 @@ impl Origin {
 
 /// The file of a core; `cycle` is that of the whole scene.
 ///
-/// # Errors If it cannot be written.
+/// # Errors
+/// If it cannot be written.
 pub fn core(model: &Model, origin: &Origin, cycle: &Cycle, core: &Core) -> Result<String, Refusal> {
     let of_core = Cycle {
         members: core
@@ -145,7 +146,8 @@ fn writable_part(problem: &InterfaceProblem) -> Result<(Vec<usize>, InterfacePro
 /// The file of a whole frozen problem in its current state, without the nodes that cannot be written
 /// ([`writable`]): these do not interact with the others.
 ///
-/// # Errors If it cannot be written.
+/// # Errors
+/// If it cannot be written.
 pub fn whole(
     model: &Model,
     origin: &Origin,
@@ -249,7 +251,8 @@ fn text(
 /// ([`writable`]). `q` includes the gaps and the previous slip, so that `u` are the gaps and slips of the whole
 /// increment.
 ///
-/// # Errors If it cannot be written: the format supports only a compliance, and no cohesion.
+/// # Errors
+/// If it cannot be written: the format supports only a compliance, and no cohesion.
 pub fn siconos(model: &Model, problem: &InterfaceProblem) -> Result<Friction2d, Refusal> {
     let TotalForceProblem { slaves, w, q } = total(model, problem)?;
     let nodes = || {
@@ -280,7 +283,8 @@ pub struct TotalForceProblem {
 
 /// A problem in total forces.
 ///
-/// # Errors If some motion is unrestrained, or a support carries the contact force of a node.
+/// # Errors
+/// If some motion is unrestrained, or a support carries the contact force of a node.
 pub fn total(model: &Model, problem: &InterfaceProblem) -> Result<TotalForceProblem, Refusal> {
     let (_, problem) = writable_part(problem)?;
     unsupported(model, &problem)?;
@@ -481,7 +485,8 @@ fn stepper(text: &str) -> Result<Stepper, Refusal> {
 /// Steps a file and its problem together until the minor iterations settle, cycle or fail. Returns the largest
 /// relative difference of a force or length.
 ///
-/// # Errors If the two differ.
+/// # Errors
+/// If the two differ.
 pub fn compared(problem: &InterfaceProblem, text: &str) -> Result<f64, Refusal> {
     let mut stepper = stepper(text)?;
     // For bonds, the file contains only the contact points, not the nodes behind them.

@@ -64,7 +64,8 @@ pub struct ExportKind {
 impl ExportKind {
     /// The names of the files for a requested file, that one first.
     ///
-    /// # Errors If the name is not suitable.
+    /// # Errors
+    /// If the name is not suitable.
     pub fn files(&self, file: &Path) -> Result<Vec<PathBuf>, String> {
         match self.made_of {
             Parts(_) => Ok(market::parts(file)?.into()),
@@ -74,7 +75,8 @@ impl ExportKind {
 
     /// The contents of these files; `None` if they are not made from a state.
     ///
-    /// # Errors If they cannot be made.
+    /// # Errors
+    /// If they cannot be made.
     pub fn made(
         &self,
         shown: &ExportState,
@@ -136,7 +138,8 @@ pub const KINDS: &[ExportKind] = &[
 
 /// The kind of a file, by its extension.
 ///
-/// # Errors If the extension is unknown; the message lists all kinds.
+/// # Errors
+/// If the extension is unknown; the message lists all kinds.
 pub fn kind(file: &Path) -> Result<&'static ExportKind, Refusal> {
     let own = file.extension().unwrap_or_default();
     let found = KINDS

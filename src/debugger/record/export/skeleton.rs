@@ -15,7 +15,8 @@ const ID: &str = "m";
 /// The text of a scene that imports a mesh. `scene` is the scene's path, `file` the path of the mesh relative
 /// to it, and `parts` are the bodies.
 ///
-/// # Errors If the mesh cannot be read or is invalid.
+/// # Errors
+/// If the mesh cannot be read or is invalid.
 pub fn skeleton(scene: &str, file: &str, parts: &[String]) -> Result<String, SceneError> {
     let bare = text(file, parts, &[], &OutlineGuess::default());
     let lines = Scene::from_text(scene, &bare, &[])?.names().lines(ID);

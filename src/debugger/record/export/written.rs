@@ -66,7 +66,8 @@ fn from(shown: &ExportState) -> String {
 /// The file of a scene: the original text if there are no overrides and no external mesh, otherwise an
 /// equivalent scene that includes both.
 ///
-/// # Errors If the text does not read back as the same scene.
+/// # Errors
+/// If the text does not read back as the same scene.
 pub fn scene(scene: &Scene) -> Result<String, Refusal> {
     if !scene.text.is_empty() && scene.overrides().next().is_none() && !scene.imports() {
         return Ok(scene.text.clone());
