@@ -49,6 +49,14 @@ pub fn contacts(text: &str) -> Result<(usize, (usize, usize)), FormatError> {
     Ok((contacts, words.place()))
 }
 
+/// Relative accuracy of the matrix of such a file: CSparse's print format has six digits.
+pub fn accuracy(text: &str) -> f64 {
+    match text.split_whitespace().nth(2) {
+        Some("2") => 5e-6,
+        _ => 0.0,
+    }
+}
+
 fn head(words: &mut Words<'_>) -> Result<(usize, usize), FormatError> {
     let dimension = words.count("the dimension")?;
     if !(2..=3).contains(&dimension) {

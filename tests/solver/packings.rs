@@ -1,10 +1,11 @@
 //! Interface problems with many contacts: packings of discs, whose forces are not unique, judged by their natural map.
 
-use crate::common::{Run, finished};
+use crate::common::{Run, finished, run};
 use crate::packing::{global, local, natural_map};
 use crate::siconos::in_blocks;
 use std::fs;
 use stickslip::contact::table2::Rule;
+use stickslip::explain::failures::describe;
 use stickslip::explain::{accuracy, report};
 use stickslip::linear::sparse_contacts::FEW;
 use stickslip::scene::Scene;
@@ -65,6 +66,45 @@ fn a_packing_goes_on_from_any_state_with_the_same_bits() {
         while again.step().is_some() {}
         assert_eq!(*again.state(), last);
     }
+}
+
+/// The problem as Siconos writes it, sparse: W has six digits.
+fn in_six_digits(problem: &Local) -> String {
+    let Local { w, q, mu } = problem;
+    let entries = w.clone().merged().entries;
+    let rows = entries
+        .iter()
+        .map(|(i, j, w)| format!("{i} {j} : {w:.5e}\n"));
+    let (size, count) = (q.len(), entries.len());
+    let numbers = q.iter().chain(mu).map(|x| format!("{x:e}\n"));
+    format!(
+        "2\n{}\n2\n{size}\n{size}\n2\nCSparse\ntriplet: {size}-by-{size}, nzmax: {count} nnz: {count}\n{}{}",
+        mu.len(),
+        rows.collect::<String>(),
+        numbers.collect::<String>()
+    )
+}
+
+/// Rounding makes a singular W indefinite, and sweeps reach the laws only as far as its digits.
+#[test]
+fn forces_of_a_rounded_matrix_are_accepted_to_its_digits_and_not_without() {
+    let problem = local(14, 12, 0.4);
+    let text = in_six_digits(&problem);
+    let open = |set: &[(String, String)]| Scene::from_text("p.dat", &text, set).unwrap();
+    let solved = finished(&open(&[]));
+    let error = natural_map(&problem, &forces(&solved));
+    assert!((1e-9..5e-6).contains(&error), "{error:e}");
+    let said = report::outcome(solved.stepper.model(), solved.stepper.event());
+    assert!(
+        said.contains("settings.matrix_accuracy is reached"),
+        "{said}"
+    );
+
+    let exact = [("settings.matrix_accuracy".to_owned(), "0".to_owned())];
+    let run = run(&open(&exact));
+    let (_, failure) = run.failure.expect("six digits do not suffice");
+    let why = describe(run.stepper.model(), &failure);
+    assert!(why.contains("do not converge; the natural map"), "{why}");
 }
 
 /// A chain of contacts, each coupled to its neighbours by a regular matrix.

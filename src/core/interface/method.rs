@@ -178,7 +178,7 @@ pub enum SearchProgress {
 }
 
 /// Why a search has no further proposal.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum NoProposal {
     /// No combination is consistent; all were tried.
     NoAnswer {
@@ -190,7 +190,7 @@ pub enum NoProposal {
 }
 
 /// Why a search found no consistent state, which does not prove that there is none.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum NotFound {
     /// Pivoting ended on a ray from every start.
     Ray,
@@ -201,10 +201,13 @@ pub enum NotFound {
     },
     /// The equations of every start of pivoting are singular.
     NoStart,
-    /// The modes of Gauss-Seidel did not become stable.
+    /// Gauss-Seidel did not converge.
     Unsettled {
         /// Sweeps done.
         sweeps: usize,
+        /// The natural map that is left, relative to the forces, if the compliance was given.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        error: Option<f64>,
     },
     /// More nodes can touch than the census allows ([`crate::interface::census::MOST`]).
     TooMany {

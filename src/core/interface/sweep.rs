@@ -27,8 +27,8 @@ const SINGULAR: f64 = 1e11;
 pub struct Sweep<const D: usize = 2> {
     /// W.
     compliance: Arc<Blocks<D>>,
-    /// Whether W was given by its entries, and not inverted.
-    given: bool,
+    /// Relative accuracy of W if it was given by its entries; `None` if it was inverted.
+    given: Option<f64>,
     nodes: Vec<SingleNode>,
     /// The nodes, part by part, and the parts.
     order: Vec<usize>,
@@ -120,7 +120,7 @@ impl Sweep {
         }
         let parts = vec![(0..problem.nodes.len()).collect()];
         let mut sweep = Sweep::start(Arc::new(compliance), parts, free, &problem.nodes);
-        sweep.given = false;
+        sweep.given = None;
         Some(sweep)
     }
 
@@ -143,6 +143,14 @@ impl Sweep {
         }
         self.renew_motions();
         self
+    }
+
+    /// With this relative accuracy of a compliance given by its entries.
+    pub fn with_accuracy(self, accuracy: f64) -> Self {
+        Sweep {
+            given: self.given.map(|_| accuracy),
+            ..self
+        }
     }
 
     /// F_n, F_t, gap and slip of a node after the last sweep.
@@ -210,7 +218,7 @@ where
         });
         Sweep {
             compliance,
-            given: true,
+            given: Some(0.0),
             nodes,
             parts: ranges.collect(),
             order: parts.concat(),
@@ -224,7 +232,12 @@ where
 
     /// Whether the compliance was given by its entries: it may be singular, and the forces that obey the law need not be unique.
     pub fn is_given(&self) -> bool {
-        self.given
+        self.given.is_some()
+    }
+
+    /// Relative accuracy of the compliance: 0 if it is exact.
+    pub fn accuracy(&self) -> f64 {
+        self.given.unwrap_or(0.0)
     }
 
     /// Recomputes the motions, in which round-off accumulates.

@@ -427,7 +427,7 @@ pub trait Source: Send {
 
     /// Judges a converged state from positions and forces alone ([`crate::contact::judge`]).
     fn judge(&mut self, at: &LinearisationPoint<'_>, after: &Norms) -> Verdict {
-        let tolerance = (10.0 * at.chosen.tolerance).max(TOLERANCE);
+        let tolerance = (10.0 * at.chosen.tolerance.max(after.limit)).max(TOLERANCE);
         let scales = Scales {
             length: self.length(),
             force: after.scale.max(f64::MIN_POSITIVE),

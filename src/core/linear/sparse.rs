@@ -42,6 +42,8 @@ pub struct SparseInterface {
     floor: f64,
     /// Contact of each node.
     contact_of: Vec<Option<usize>>,
+    /// Largest own compliance of a contact (length per force).
+    softest: f64,
     /// Stiffness that relates lengths to forces (force per length).
     spring: f64,
     /// Current position of every node.
@@ -77,16 +79,16 @@ impl SparseInterface {
         let compliance = blocks(contacts, given.linear);
         let count = 2 * contacts;
         let own = (0..contacts).map(|k| compliance.own(k));
-        let mean = own
-            .map(|own| own[0][0].abs() + own[1][1].abs())
-            .sum::<f64>()
-            / count as f64;
+        let own = own.flat_map(|own| [own[0][0].abs(), own[1][1].abs()]);
+        let mean = own.clone().sum::<f64>() / count as f64;
+        let softest = own.fold(0.0, f64::max);
         Some(SparseInterface {
             first_force: given.first_force,
             floor: given.floor,
             contact_of: contacts_of_nodes(model),
             parts: compliance.parts(),
             compliance: Arc::new(compliance),
+            softest,
             spring: if mean > 0.0 { 1.0 / mean } else { 1.0 },
             positions: model.nodes.iter().map(|node| node.at).collect(),
             free: vec![0.0; count],
@@ -332,7 +334,14 @@ impl Source for SparseInterface {
         let scale = loads.max(largest(&self.before)).max(f64::MIN_POSITIVE);
         let force = self.spring * largest(&self.moved);
         self.norms = at.norms(force, scale);
-        self.norms.limit = self.norms.limit.max(SETTLED);
+        // Gaps, drifts and forces that the natural map of accepted forces allows.
+        let size = self.before.iter().map(|f| f * f).sum::<f64>().sqrt();
+        let settled = SETTLED.max(at.settings.matrix_accuracy);
+        let allowed = settled
+            * (size / scale)
+                .max(size * self.softest / model.length)
+                .max(1.0);
+        self.norms.limit = self.norms.limit.max(allowed);
         Ok(())
     }
 
@@ -393,7 +402,9 @@ impl Source for SparseInterface {
         }
         let nodes = self.nodes(at);
         let sweep = Sweep::start(self.compliance.clone(), self.parts.clone(), free, &nodes);
-        Ok(sweep.with_forces(&nodes))
+        Ok(sweep
+            .with_accuracy(at.settings.matrix_accuracy)
+            .with_forces(&nodes))
     }
 
     fn takes_forces(&self) -> bool {

@@ -55,8 +55,17 @@ impl ConeSolver {
         })
     }
 
+    /// Natural map at which the forces are accepted: after the last sweep, the accuracy of W.
+    fn bound(&self) -> f64 {
+        match self.state.next.minor >= MOST {
+            true => SETTLED.max(self.state.controls.settings.matrix_accuracy),
+            false => SETTLED,
+        }
+    }
+
     /// Record of a contact after a sweep.
     fn record(&self, slave: usize, error: f64) -> ContactRecord {
+        let bound = self.bound();
         let node = &self.state.nodes[slave];
         let place = 3 * slave;
         let [f_n, f_1, f_2] = [0, 1, 2].map(|k| self.sweep.forces()[place + k]);
@@ -81,7 +90,7 @@ impl ConeSolver {
             foot: self.model.nodes[self.model.contacts[slave].node].at,
             ..ContactRecord::from_modes(node.mode, next, node)
         };
-        record.decision.rule = if error <= SETTLED {
+        record.decision.rule = if error <= bound {
             Rule::Settled
         } else {
             Rule::Sweeps
@@ -89,8 +98,8 @@ impl ConeSolver {
         record.decision.tests[0] = Some(Test {
             tested: TestedQuantity::Error,
             value: error,
-            bound: SETTLED,
-            margin: SETTLED - error,
+            bound,
+            margin: bound - error,
             tie: false,
         });
         record
@@ -124,9 +133,11 @@ impl Solver for ConeSolver {
     fn advance(&mut self) -> Result<(), SolverLost> {
         let place = self.go()?;
         let asked = self.state.changes().to_vec();
+        let limit = self.bound();
+        let last = self.state.next.minor >= MOST;
         let norms = |relative: f64| Norms {
             relative,
-            limit: SETTLED,
+            limit,
             ..Norms::default()
         };
         let before = norms(self.error);
@@ -135,13 +146,10 @@ impl Solver for ConeSolver {
         let error = self.error;
         let count = self.model.contacts.len();
         let nodes: Vec<_> = (0..count).map(|slave| self.record(slave, error)).collect();
-        let outcome = match error <= SETTLED
-            && !nodes
-                .iter()
-                .any(|record| record.decision.next != record.decision.before)
-        {
+        let changes = |record: &ContactRecord| record.decision.next != record.decision.before;
+        let outcome = match error <= limit && (last || !nodes.iter().any(changes)) {
             true => Outcome::accepted(norms(error), true),
-            false if self.state.next.minor >= MOST => Outcome::Failed(Failure::Reported {
+            false if last => Outcome::Failed(Failure::Reported {
                 reason: format!(
                     "{MOST} sweeps do not converge; the natural map of the forces is {error:.1e}"
                 ),

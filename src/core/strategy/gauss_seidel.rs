@@ -7,7 +7,8 @@
 //!
 //! With a compliance given by its entries ([`Sweep::is_given`]), a minor iteration sweeps until the error, the natural map, has
 //! fallen by a factor of 10, at most [`MOST_SWEEPS`] times. Below [`SETTLED`] the modes are solved for once more; if they have no
-//! unique solution, the forces of the sweeps are accepted.
+//! unique solution, the forces of the sweeps are accepted. Rounded entries make a singular W indefinite, and the error then falls
+//! no further than the rounding: from there on, forces within the accuracy of W are accepted in the same way.
 
 use crate::interface::method::{NoProposal, Proposal, Search, SearchInput};
 use crate::interface::vertex::vertices;
@@ -29,6 +30,8 @@ pub const SETTLED: f64 = 1e-9;
 const FALL: f64 = 0.1;
 const MOST_SWEEPS: usize = 500;
 const MEASURED: usize = 10;
+/// Fraction of the error that is left after [`MOST_SWEEPS`] sweeps that do not improve the forces.
+const IDLE: f64 = 0.5;
 /// Maximum number of sweeps over a given compliance.
 const MOST_GIVEN: usize = 100_000;
 
@@ -48,6 +51,8 @@ struct SweepState {
     found: Vec<AssumedMode>,
     /// Change in the last sweep, or the error of a given compliance (relative).
     change: f64,
+    /// Whether the sweeps of the last minor iteration over a given compliance did not improve the forces.
+    idle: bool,
     /// Sweeps done.
     sweeps: usize,
     /// Minor iterations in a row after which a node had no force that obeys the law.
@@ -66,6 +71,7 @@ impl SweepState {
             does: Vec::new(),
             found: Vec::new(),
             change: f64::INFINITY,
+            idle: false,
             sweeps: 0,
             unanswered: 0,
         }
@@ -120,16 +126,18 @@ impl SweepState {
         if self.sweeps == 0 {
             self.change = self.sweep.settle(SETTLED);
         }
-        let (goal, most) = (FALL * self.change, self.sweeps + MOST_SWEEPS);
-        while self.change > goal.max(SETTLED) && self.sweeps < most {
+        let (before, most) = (self.change, self.sweeps + MOST_SWEEPS);
+        while self.change > (FALL * before).max(SETTLED) && self.sweeps < most {
             self.sweep_on(MEASURED);
             self.change = self.sweep.settle(SETTLED);
         }
+        self.idle = self.change > IDLE * before;
     }
 
-    /// Whether the forces of a given compliance obey Coulomb's law.
+    /// Whether the forces of a given compliance obey Coulomb's law, as far as its accuracy allows.
     fn is_settled(&self) -> bool {
-        self.sweep.is_given() && self.change <= SETTLED
+        let reached = self.idle && self.change <= self.sweep.accuracy();
+        self.sweep.is_given() && (self.change <= SETTLED || reached)
     }
 
     /// Whether further sweeps would change nothing, or the limit is reached.
@@ -155,6 +163,7 @@ impl Search for GaussSeidel {
         if going.is_over() {
             return Err(NotFound::Unsettled {
                 sweeps: going.sweeps,
+                error: going.sweep.is_given().then_some(going.change),
             }
             .into());
         }

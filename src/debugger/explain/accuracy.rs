@@ -1,5 +1,6 @@
 //! Describes how far round-off limits the accuracy of a scene.
 
+use stickslip_core::strategy::SETTLED;
 use stickslip_core::{Event, Norms, Rule, Test, TestedQuantity};
 use stickslip_scene::{sig2, sig4};
 
@@ -54,8 +55,14 @@ pub fn settled(event: &Event) -> Option<String> {
 
 /// Describes forces that were accepted with this natural map.
 pub fn not_unique(error: f64) -> String {
+    let why = match error > SETTLED {
+        true => {
+            "settings.matrix_accuracy is reached: contact forces that more sweeps do not improve"
+        }
+        false => "the modes do not determine the contact forces; those of the sweeps",
+    };
     format!(
-        "the modes do not determine the contact forces; those of the sweeps satisfy the contact laws to {} (natural map)",
+        "{why} satisfy the contact laws to {} (natural map)",
         sig2(error)
     )
 }

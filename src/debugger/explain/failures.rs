@@ -119,8 +119,13 @@ fn not_found(model: &Model, why: NotFound) -> String {
         NotFound::NoStart => {
             "pivoting cannot start: the equations of all known starts are singular".into()
         }
-        NotFound::Unsettled { sweeps } => {
-            format!("after {} of Gauss-Seidel the modes still change", counted(sweeps, "sweep"))
+        NotFound::Unsettled { sweeps, error } => {
+            let left = error.map(|error| format!("; the natural map of the forces is {}", sig2(error)));
+            format!(
+                "{} of Gauss-Seidel do not converge{}",
+                counted(sweeps, "sweep"),
+                left.unwrap_or_default()
+            )
         }
         NotFound::TooMany { nodes } => format!(
             "{nodes} nodes can touch, too many for a census (limit {})",

@@ -141,6 +141,13 @@ pub(super) fn settings(settings: &Settings) -> Result<(), Fault> {
             "limit_load is {limit_load:?}; it must be above 0 and below 1"
         );
     }
+    let accuracy = settings.matrix_accuracy;
+    if !(0.0..1.0).contains(&accuracy) {
+        bail!(
+            here.then("matrix_accuracy"),
+            "matrix_accuracy is {accuracy:?}; it must be at least 0 and below 1"
+        );
+    }
     let tolerance = settings.tolerance;
     if tolerance > 0.0 && tolerance <= 1e-2 {
         return Ok(());

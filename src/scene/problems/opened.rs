@@ -44,7 +44,11 @@ pub(crate) fn from_file(
 /// If it is invalid.
 pub(crate) fn siconos(name: &str, text: &str, memory: Option<f64>) -> Result<Problem, SceneError> {
     match siconos::local_within(text, memory, super::blocks_fit) {
-        Ok(local) => Ok(siconos::problem(local, &title(name))),
+        Ok(local) => {
+            let mut problem = siconos::problem(local, &title(name));
+            problem.settings.matrix_accuracy = stickslip_exchange::siconos::accuracy(text);
+            Ok(problem)
+        }
         Err(broken) => Err(SceneError {
             at: Some(broken.at.unwrap_or((1, 1))),
             ..SceneError::whole(name, broken.message)

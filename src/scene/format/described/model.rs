@@ -91,6 +91,7 @@ fields!(Settings {
     at_major_limit,
     tolerance,
     limit_load,
+    matrix_accuracy,
     search,
     search_limit,
     initial_gaps,
