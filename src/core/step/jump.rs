@@ -114,12 +114,9 @@ impl Stepper {
             return None;
         }
         if jumps != Jumps::Accept
-            && self
-                .now
-                .state
-                .recovery
-                .fallback
-                .is_some_and(|route| !matches!(route.by, Fallback::Held | Fallback::Back))
+            && self.now.state.recovery.fallback.is_some_and(|route| {
+                !matches!(route.by, Fallback::Held | Fallback::Longer | Fallback::Back)
+            })
         {
             self.now.state.next_major();
             return Some(self.fail(why.clone()));

@@ -159,10 +159,11 @@ pub struct SearchRecord {
 const WORTH: u32 = 4;
 
 impl SearchRecord {
-    /// Whether a fallback may continue within the limit; 0 means [`WORTH`] times the cost of the run. Smaller increments may
-    /// spend half of it.
+    /// Whether a fallback may continue within the limit; 0 means [`WORTH`] times the cost of the run, and once more for the last
+    /// fallback. Smaller increments may spend half of it.
     pub(super) fn can_afford(&self, by: Fallback, limit: u32) -> bool {
         let limit = match limit {
+            0 if by == Fallback::Longer => self.run.saturating_mul(WORTH + 1),
             0 => self.run.saturating_mul(WORTH),
             limit => limit,
         };

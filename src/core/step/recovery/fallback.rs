@@ -15,7 +15,8 @@
 //!    major iterations may diverge or cycle however small the increment. It stays in force in the following increments;
 //! 6. with parts down to 1/4096 of the least increment;
 //! 7. with the loads of the last equilibrium, from which a damped motion leads to the next one (`damped`), which is
-//!    marked.
+//!    marked;
+//! 8. with twice the increment, past the end of this one: there may be an equilibrium again. A jump is marked.
 //!
 //! Before all others, if a body is unsupported at the start of the history, near contacts start closed.
 //!
@@ -53,6 +54,8 @@ crate::words! {
         Back "the last part without a fallback, since none has helped",
         /// The change of the contact geometry in the tangent, in this increment and all that follow.
         Geometry "geometry: consistent",
+        /// Twice the increment from the last equilibrium, past the end of this one, and its halves.
+        Longer "an increment past the end of this one",
     }
 }
 
@@ -70,7 +73,11 @@ impl Fallback {
     pub(in crate::step) fn searches(self) -> bool {
         matches!(
             self,
-            Fallback::Touching | Fallback::Geometry | Fallback::Deeper | Fallback::Release
+            Fallback::Touching
+                | Fallback::Geometry
+                | Fallback::Deeper
+                | Fallback::Release
+                | Fallback::Longer
         )
     }
 
@@ -82,6 +89,7 @@ impl Fallback {
             | Fallback::Held
             | Fallback::Deeper
             | Fallback::Release
+            | Fallback::Longer
             | Fallback::Back => {}
             Fallback::Consistent => settings.t_max = BoundUpdate::Consistent,
             Fallback::Start => settings.touch = Touch::Start,

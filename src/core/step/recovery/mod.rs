@@ -56,7 +56,7 @@ const ALONG: [&dyn Recovery; 3] = [
     &path_corner::LastCornerRestart,
 ];
 const LOADED: [&dyn Recovery; 3] = [&cut::IncrementCut, &whole::WholeIncrement, &damped::Release];
-const FALLBACKS: [&dyn Recovery; 9] = [
+const FALLBACKS: [&dyn Recovery; 10] = [
     &Fallback::Touching,
     &Fallback::Section,
     &Fallback::Consistent,
@@ -65,6 +65,7 @@ const FALLBACKS: [&dyn Recovery; 9] = [
     &Fallback::Geometry,
     &Fallback::Deeper,
     &Fallback::Release,
+    &Fallback::Longer,
     &Fallback::Back,
 ];
 

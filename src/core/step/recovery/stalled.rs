@@ -4,7 +4,7 @@ use super::fallback::{DEEPER, Fallback};
 use crate::model::{Body, Factor, Jumps, SearchMode};
 use crate::plane::max_abs;
 use crate::strategy;
-use crate::{Failure, Mode, Model, Singular, Source, State};
+use crate::{Failure, Mode, Model, Singular, Source, State, SubIncrement};
 
 /// Minimum size of a half, as a fraction of the whole increment.
 const SMALLEST_HALF: f64 = 1e-9;
@@ -113,6 +113,12 @@ impl FailedIncrement<'_> {
         self.source.damps()
             && self.state.start.verdict.is_some()
             && self.state.record.searched.released != Some(start)
+    }
+
+    /// Twice the increment from the last accepted state, at most to the end of the leg.
+    pub fn longer(&self) -> SubIncrement {
+        let place = self.state.start.place();
+        SubIncrement::whole(self.model, place, 2.0 * self.state.controls.increment)
     }
 
     /// Whether an increment with this failure may succeed if sliding is held back.
