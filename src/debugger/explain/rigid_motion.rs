@@ -2,7 +2,9 @@
 //! when they are loose.
 
 use super::facts::{Fact, Part};
+use super::failures::pair;
 use super::names::{arrow, slave};
+use super::round_off::reach;
 use std::collections::HashSet;
 use stickslip_core::contact::projection::{Projection, projection_at, tangent};
 use stickslip_core::fem::pressure::Pressures;
@@ -129,17 +131,17 @@ impl<'a> BodyMotion<'a> {
     fn pushed(&self, state: &State) -> String {
         let power = self.power(state);
         let moves = match self.motion {
-            LooseMotion::Translation([x, y]) => {
-                let [x, y] = [x, y].map(|x| sig4(self.sign * x));
-                format!("moves along ({x}, {y})")
+            LooseMotion::Translation(along) => {
+                let along = along.map(|x| self.sign * x);
+                format!("moves along {}", pair(along, 1.0))
             }
-            LooseMotion::Rotation([x, y]) => {
+            LooseMotion::Rotation(about) => {
                 let way = if self.sign > 0.0 {
                     "anticlockwise"
                 } else {
                     "clockwise"
                 };
-                format!("turns {way} about ({}, {})", sig4(x), sig4(y))
+                format!("turns {way} about {}", pair(about, reach(self.model)))
             }
         };
         let loads = match (power > 0.0, self.motion) {
@@ -284,12 +286,11 @@ impl<'a> BodyMotion<'a> {
     fn stopped(&self, state: &State) -> String {
         let motion = match self.motion {
             LooseMotion::Translation(along) => {
-                let [x, y] = along.map(|x| sig4(self.sign * x));
-                format!("the motion along ({x}, {y})")
+                let along = along.map(|x| self.sign * x);
+                format!("the motion along {}", pair(along, 1.0))
             }
             LooseMotion::Rotation(about) => {
-                let [x, y] = about.map(sig4);
-                format!("the rotation about ({x}, {y})")
+                format!("the rotation about {}", pair(about, reach(self.model)))
             }
         };
         let mut closing: Vec<(f64, usize)> = Vec::new();
