@@ -598,6 +598,7 @@ fn drawn(start: Start) -> Vec<u8> {
     session.type_and_see("S", "◆ 1 held");
     session.type_and_see("c", "the history is complete");
     session.type_and_see(":nonsense\r", "unknown action");
+    session.type_and_see(":incremnt 1\r", "did you mean \"increment\"?");
     session.type_and_see("?", "Move through the iterations");
     session.keys("?");
     session.see_no_more("Move through the iterations");
