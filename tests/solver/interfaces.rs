@@ -364,9 +364,7 @@ fn what_is_no_problem_is_refused_with_a_sentence() {
     let hdf = put(&folder, "broken.h5", b"\x89HDF\r\n\x1a\nnothing more");
     let told = match fclib::ready() {
         Ok(()) => "invalid HDF5 file",
-        Err(_) => {
-            "this build has no fclib (HDF5) support; cargo install stickslip --features fclib"
-        }
+        Err(_) => "this build has no fclib (HDF5) support; cargo install --path . --features fclib",
     };
     let refusal = refusal(&folder, &hdf);
     assert!(
