@@ -95,7 +95,7 @@ impl Error {
 fn how_to_overwrite(error: &FileError) -> &'static str {
     match error {
         FileError::Exists(_) => " (use --force)",
-        FileError::Failed { .. } => "",
+        FileError::Failed { .. } | FileError::Folder { .. } => "",
     }
 }
 
@@ -206,6 +206,12 @@ pub fn put(output: Option<&Path>, text: &str, force: bool) -> Result<Exit, Error
     Ok(Exit::Good)
 }
 
+/// Reads a whole number.
+pub fn whole<T: std::str::FromStr>(text: &str) -> Result<T, String> {
+    let number = text.parse().ok();
+    number.ok_or_else(|| "expected a whole number, not negative".to_owned())
+}
+
 /// Rejects options that name the same file.
 pub fn distinct(named: &[(&str, Option<&str>)]) -> Result<(), Error> {
     let given = || named.iter().filter_map(|(_, name)| *name);
@@ -213,8 +219,12 @@ pub fn distinct(named: &[(&str, Option<&str>)]) -> Result<(), Error> {
     let Some(name) = twice else { return Ok(()) };
     let options: Vec<&str> = named.iter().map(|(option, _)| *option).collect();
     let (last, first) = options.split_last().unwrap_or((&"", &[]));
+    let target = match name {
+        "-" => "standard output".to_owned(),
+        _ => format!("the file {name}"),
+    };
     Err(usage!(
-        "{name}: only one of {} and {last} can write to this file",
+        "only one of {} and {last} can write to {target}",
         first.join(", ")
     ))
 }

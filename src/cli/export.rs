@@ -201,9 +201,12 @@ fn reported(args: &Args, interrupt: &Interrupt) -> Result<Exit, Error> {
 
 /// Reads `1920x1080`.
 pub fn size(text: &str) -> Result<(u16, u16), String> {
-    let sides = text
-        .split_once('x')
-        .and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
+    // Any larger number is too large as well.
+    let side = |side: &str| {
+        let size = side.parse::<u64>().ok()?;
+        Some(u16::try_from(size).unwrap_or(u16::MAX))
+    };
+    let sides = text.split_once('x').and_then(|(w, h)| side(w).zip(side(h)));
     sides.ok_or_else(|| "a size has the form 120x40".into())
 }
 

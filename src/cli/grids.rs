@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use stickslip_core::{Event, Outcome, State, Stepper, counted};
 use stickslip_debugger::record::export::grid::grid;
 use stickslip_exchange::vtu;
-use stickslip_platform::files::{self, FileError, Output};
+use stickslip_platform::files::{self, Output};
 
 /// When a file is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -54,10 +54,7 @@ impl Grids {
         each: GridInterval,
         overwrite: bool,
     ) -> Result<Grids, Error> {
-        std::fs::create_dir_all(folder).map_err(|source| FileError::Failed {
-            path: folder.to_owned(),
-            source,
-        })?;
+        files::create_folder(folder)?;
         let stem = Path::new(scene)
             .file_stem()
             .unwrap_or_default()

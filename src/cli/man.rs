@@ -1,6 +1,6 @@
 //! `stickslip man`: pages for man, one for the program and one for each subcommand.
 
-use super::base::{Error, Exit, answer, notify, usage};
+use super::base::{Error, Exit, answer, notify};
 use clap_mangen::Man;
 use std::path::PathBuf;
 use stickslip_platform::files;
@@ -22,7 +22,7 @@ pub fn main(args: &Args, mut program: clap::Command) -> Result<Exit, Error> {
     let Some(folder) = &args.output else {
         return answer(&page(&program)?);
     };
-    std::fs::create_dir_all(folder).map_err(|why| usage!("{}: {why}", folder.display()))?;
+    files::create_folder(folder)?;
     let mut pages = Vec::new();
     for command in std::iter::once(&program).chain(program.get_subcommands()) {
         let name = command.get_display_name().unwrap_or(command.get_name());

@@ -1,6 +1,6 @@
 //! `stickslip map`: where the iterations converge.
 
-use super::base::{Error, Exit, SetArgs, put, tolerance, usage};
+use super::base::{Error, Exit, SetArgs, put, tolerance, usage, whole};
 use super::interrupt::Interrupt;
 use super::sweep::{Report, SweepArgs};
 use std::ops::RangeInclusive;
@@ -35,13 +35,13 @@ pub struct Args {
     #[arg(long, requires = "random")]
     totals: bool,
     /// Seed of the random problems
-    #[arg(long, value_name = "SEED", default_value_t = 1)]
+    #[arg(long, value_name = "SEED", default_value_t = 1, value_parser = whole::<u64>)]
     seed: u64,
     /// Node counts of the random problems: K, or A..B [default: 1..4]
     #[arg(long, value_name = "A..B", value_parser = range)]
     nodes: Option<RangeInclusive<usize>>,
     /// Writes random problem number K as a scene file, and runs nothing
-    #[arg(long, value_name = "K")]
+    #[arg(long, value_name = "K", value_parser = whole::<usize>)]
     write: Option<usize>,
     /// Output file of --write; - is standard output [default: -]
     #[arg(long, short, value_name = "FILE", requires = "write")]

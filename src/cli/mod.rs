@@ -210,9 +210,16 @@ pub fn main() -> ExitCode {
         .into()
 }
 
-/// The command line, with the subcommands in groups.
+/// The command line, with the subcommands in groups. A negative number is a value, which its option then refuses, and never a
+/// misspelt option.
 pub fn program() -> clap::Command {
+    let negative = |arg: clap::Arg| {
+        let takes_values = arg.get_action().takes_values();
+        arg.allow_negative_numbers(takes_values)
+    };
     groups::grouped(Cli::command())
+        .mut_args(negative)
+        .mut_subcommands(|own| own.mut_args(negative))
 }
 
 fn parsed() -> Result<Cli, clap::Error> {

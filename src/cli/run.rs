@@ -1,6 +1,6 @@
 //! `stickslip run`: solves a scene from start to end.
 
-use super::base::{Error, Exit, OutputState, notify, quoted, usage};
+use super::base::{Error, Exit, OutputState, notify, quoted, usage, whole};
 use super::interrupt::Interrupt;
 use super::json;
 use super::records::{FailureKind, FailureRecord, RunRecord};
@@ -32,7 +32,8 @@ pub struct Args {
         long = "max-iterations",
         alias = "most",
         value_name = "ITERATIONS",
-        default_value_t = 1000
+        default_value_t = 1000,
+        value_parser = whole::<u64>
     )]
     most: u64,
     /// Tests the stability of each accepted state: a column of --csv, and a summary at the end

@@ -40,7 +40,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         return answer(&listed());
     };
     pen::ready().map_err(Error::usage)?;
-    std::fs::create_dir_all(folder).map_err(|why| usage!("{}: {why}", folder.display()))?;
+    files::create_folder(folder)?;
     let chosen: Vec<Colours> = args
         .colours
         .iter()

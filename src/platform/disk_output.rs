@@ -219,8 +219,14 @@ fn temporary_file(target: &Path) -> io::Result<NamedTempFile> {
         // The system's error would name the temporary file.
         let folder = directory.display();
         let what = match why.kind() {
-            io::ErrorKind::NotFound => format!("there is no folder {folder}"),
-            io::ErrorKind::PermissionDenied => format!("the folder {folder} is not writable"),
+            io::ErrorKind::NotFound if !directory.exists() => {
+                format!("there is no folder {folder}")
+            }
+            // Folders of the system, such as /proc, refuse new files as if they did not exist.
+            io::ErrorKind::NotFound | io::ErrorKind::PermissionDenied => {
+                format!("the folder {folder} is not writable")
+            }
+            io::ErrorKind::NotADirectory => format!("{folder} is not a folder"),
             _ => return why,
         };
         io::Error::new(why.kind(), what)

@@ -24,6 +24,14 @@ pub enum FileError {
         /// The error from the system.
         source: io::Error,
     },
+    /// A folder cannot be created.
+    #[error("{}: the folder cannot be created: {source}", path.display())]
+    Folder {
+        /// The folder.
+        path: PathBuf,
+        /// The error from the system.
+        source: io::Error,
+    },
 }
 
 impl FileError {
@@ -47,6 +55,20 @@ impl Output {
     pub fn failed(&self, source: io::Error) -> FileError {
         FileError::new(&self.target, source)
     }
+}
+
+/// Creates a folder for output, with its parents, unless it exists.
+///
+/// # Errors
+/// If it cannot be created, for example because a file has its name.
+pub fn create_folder(path: &Path) -> Result<(), FileError> {
+    crate::disk::create_dir_all(path).map_err(|why| FileError::Folder {
+        path: path.to_owned(),
+        source: match why.kind() {
+            io::ErrorKind::AlreadyExists => io::Error::other("a file has this name"),
+            _ => why,
+        },
+    })
 }
 
 /// Writes several files, all or none.

@@ -299,6 +299,13 @@ fn corners(here: &Path, shape: &Shape<'_>) -> Result<[Point; 4], Fault> {
         point(&list.then(k), *at)?;
     }
     let corners = match *shape.corners {
+        // The block would be turned by 180 degrees: its bottom edge would be at the top.
+        [(x, y), high] if x > high.0 && y > high.1 => {
+            bail!(
+                list,
+                "the first corner, ({x:?}, {y:?}), is the upper right one; the lower left one comes first"
+            );
+        }
         [low, high] => [low, (high.0, low.1), high, (low.0, high.1)],
         [a, b, c, d] => [a, b, c, d],
         _ => {

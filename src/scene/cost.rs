@@ -251,7 +251,7 @@ fn slaves_line(model: &Model) -> String {
         return words::counted(0, "node");
     }
     format!(
-        "{}; they start {}",
+        "{}; start: {}",
         words::counted(model.contacts.len(), "node"),
         parts
     )
@@ -324,12 +324,12 @@ fn without(model: &Model) -> Vec<String> {
     for body in &model.bodies {
         match &body.kind {
             BodyKind::Beam(beam) if beam.ga.is_none() => lines.push(format!(
-                "no shear deformation of {}: GA is not given",
+                "shear deformation of {}: GA is not given",
                 body.name
             )),
             BodyKind::Solid(solid) if solid.materials.iter().all(|m| m.update == Update::Total) => {
                 lines.push(format!(
-                    "no memory of earlier increments in {}: update is total",
+                    "memory of earlier increments in {}: update is total",
                     body.name
                 ));
             }
@@ -337,7 +337,7 @@ fn without(model: &Model) -> Vec<String> {
         }
     }
     for surface in model.surfaces.iter().filter(|surface| surface.rigid) {
-        lines.push(format!("no unknowns on surface {}: rigid", surface.name));
+        lines.push(format!("unknowns on surface {}: rigid", surface.name));
     }
     for (k, surface) in model.surfaces.iter().enumerate() {
         if !model
@@ -346,7 +346,7 @@ fn without(model: &Model) -> Vec<String> {
             .any(|slave| slave.surfaces.contains(&k))
         {
             lines.push(format!(
-                "no slave nodes on surface {}: nothing can touch it",
+                "slave nodes on surface {}: nothing can touch it",
                 surface.name
             ));
         }
@@ -354,7 +354,7 @@ fn without(model: &Model) -> Vec<String> {
     let scene_wide = [
         (
             model.contacts.is_empty(),
-            "no contact: there are no slave nodes",
+            "contact: there are no slave nodes",
         ),
         (
             !model.contacts.is_empty()
@@ -362,24 +362,24 @@ fn without(model: &Model) -> Vec<String> {
                     .contacts
                     .iter()
                     .all(|slave| slave.friction.is_smooth()),
-            "no friction: angle and cohesion are 0",
+            "friction: angle and cohesion are 0",
         ),
         (
             model.contacts.iter().all(|s| s.friction.cohesion == 0.0)
                 && !model.contacts.iter().all(|s| s.friction.is_smooth()),
-            "no cohesion: it is 0",
+            "cohesion: it is 0",
         ),
         (
             model.loads.is_empty() && model.pressures.is_empty(),
-            "no loads: there are no forces and moments",
+            "loads: there are no forces and moments",
         ),
         (
             model.prescribed.is_empty(),
-            "no prescribed displacements: there are none",
+            "prescribed displacements: there are none",
         ),
         (
             model.monitors.is_empty(),
-            "no monitors: --csv has only increment, load, majors, minors and jumped",
+            "monitors: --csv has only increment, load, majors, minors and jumped",
         ),
     ];
     lines.extend(

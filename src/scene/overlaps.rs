@@ -39,8 +39,10 @@ pub(crate) fn at_start(model: &Model) -> Vec<String> {
     let near = NONE * model.length;
     let places: Vec<[f64; 2]> = model.nodes.iter().map(|node| node.at).collect();
     let found = overlaps(model, &places, near);
+    let mut pairs = HashSet::new();
     found
         .iter()
+        .filter(|found| pairs.insert(unordered(found.bodies)))
         .map(|Overlap { bodies, first, .. }| {
             let [outer, inner] = bodies.map(|body| &model.bodies[body].name);
             format!(
@@ -62,11 +64,10 @@ pub fn at_end(model: &Model, last: &IncrementStart) -> Vec<String> {
     for found in overlaps(model, &model.places(&last.u), near) {
         let was = before.iter().filter(|was| was.bodies == found.bodies);
         let was = was.map(|was| was.depth).fold(0.0, f64::max);
-        let [a, b] = found.bodies;
         let grown = found.depth - was - found.bend;
         if grown <= found.most
             || grown - allowed(model, &last.nodes, found.bodies) <= found.most
-            || !pairs.insert([a.min(b), a.max(b)])
+            || !pairs.insert(unordered(found.bodies))
         {
             continue;
         }
@@ -80,6 +81,11 @@ pub fn at_end(model: &Model, last: &IncrementStart) -> Vec<String> {
         ));
     }
     all
+}
+
+/// Both bodies of a pair, whichever is the outer one.
+fn unordered([a, b]: [usize; 2]) -> [usize; 2] {
+    [a.min(b), a.max(b)]
 }
 
 /// The largest penetration that the springs of contacts between two bodies have (length).

@@ -17,7 +17,7 @@ use stickslip_exchange::matrix_market;
 use stickslip_platform::{disk, input};
 
 /// Where an interface problem in space cannot be used.
-pub const IN_SPACE: &str = "the interface problem is one in space, which `stickslip FILE`, `run`, `record` and `remedies` solve";
+pub const IN_SPACE: &str = "this is an interface problem in space; only `stickslip FILE`, `run`, `record` and `remedies` take it";
 
 /// The kinds of files that the program reads or writes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -103,7 +103,7 @@ pub enum PlotError {
     #[error("the chart cannot be drawn: {0}")]
     Undrawable(String),
     /// The program was built without plotting.
-    #[error("this build has no plots; cargo install stickslip --features plot")]
+    #[error("this build has no plots; cargo install --path . --features plot")]
     NotBuilt,
 }
 

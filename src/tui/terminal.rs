@@ -16,8 +16,8 @@ use crossterm::event::{
     KeyEventKind, KeyModifiers, MouseButton, MouseEventKind,
 };
 use crossterm::terminal::{
-    BeginSynchronizedUpdate, EndSynchronizedUpdate, EnterAlternateScreen, LeaveAlternateScreen,
-    disable_raw_mode, enable_raw_mode,
+    BeginSynchronizedUpdate, Clear, ClearType, EndSynchronizedUpdate, EnterAlternateScreen,
+    LeaveAlternateScreen, disable_raw_mode, enable_raw_mode,
 };
 use crossterm::{execute, queue};
 use ratatui::backend::CrosstermBackend;
@@ -178,7 +178,14 @@ fn give_back() {
 fn enter() -> io::Result<()> {
     enable_raw_mode()?;
     signals::read_without_waiting()?;
-    execute!(stdout(), EnterAlternateScreen, EnableBracketedPaste, Hide)?;
+    // A killed program leaves the terminal on its alternate screen, which entering it again does not clear.
+    execute!(
+        stdout(),
+        EnterAlternateScreen,
+        Clear(ClearType::All),
+        EnableBracketedPaste,
+        Hide
+    )?;
     if MOUSE.load(Ordering::SeqCst) {
         console::report_mouse(true)
     } else {

@@ -137,6 +137,11 @@ fn core_export_and_audit_take_an_attached_solver() {
     assert!(found == 3 && said.contains("no cycle"), "{said}");
     let (found, table, said) = run(&["audit", "--"], &converges);
     assert!(found == 0 && table.contains("accepted"), "{table}{said}");
+    // A pushing surface is no violation of a negative size.
+    let mut numbers = table
+        .split_whitespace()
+        .filter_map(|word| word.parse::<f64>().ok());
+    assert!(numbers.all(|number| number >= 0.0), "{table}");
     let pulls = start("01-pinned-beam-rough-floor", "any", "upside-down").command;
     let (found, table, said) = run(&["audit", "--"], &pulls);
     assert!(

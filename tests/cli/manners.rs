@@ -280,6 +280,33 @@ fn numbers_on_the_command_line_without_a_meaning_are_refused() {
             "expected a whole number from 1 to 1000",
         ),
         ("map osc-two6 --jobs 0", "expected a whole number from 1"),
+        // A negative number is a value, not an option.
+        ("map osc-two6 --jobs -1", "expected a whole number from 1"),
+        (
+            "map osc-two6 --tolerance -1",
+            "expected a number that is at least 0",
+        ),
+        (
+            "map --random 2 --seed -1",
+            "expected a whole number, not negative",
+        ),
+        ("map --write x", "expected a whole number, not negative"),
+        (
+            "run osc-two6 --max-iterations 1.5",
+            "expected a whole number, not negative",
+        ),
+        (
+            "export osc-two6 -o a.svg --font -3",
+            "a font has 4 to 200 pixels",
+        ),
+        (
+            "export osc-two6 -o a.svg --size 100000x100000",
+            "a picture has 100 to 8000 pixels per side",
+        ),
+        (
+            "run osc-two6 --csv - --json -",
+            "can write to standard output",
+        ),
     ] {
         let refused = ran(Path::new("."), &words(line));
         assert_eq!(code(&refused), 2, "{line}: {}", err(&refused));

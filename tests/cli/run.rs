@@ -135,7 +135,7 @@ fn a_mechanism_is_named_with_body_and_motion() {
     let by_table_2 = ["--set", "settings.strategy=table2", "-q"];
     let output = ran(&[&free[..], &by_table_2].concat());
     assert_eq!(code(&output), 3);
-    let motion = "beam can rotate about (0, 2.8284)";
+    let motion = "beam can rotate about (0, 2.828)";
     assert!(err(&output).contains(motion), "{}", err(&output));
     // The ladder says the same, and finds the state in which the floor holds the beam.
     let output = ran(&free);

@@ -28,6 +28,18 @@ fn each_fault_has_one_message_with_its_place() {
             "",
             ":33:9: materials[0]: the field \"EA\" is missing",
         ),
+        // Behind a trailing comma there is no value that could be wrong.
+        (
+            "increment: 0.01),",
+            "),",
+            ":41:14: history: the field \"increment\" is missing",
+        ),
+        (
+            "loads: [Force(node: \"beam.end\", x: -1.0)],
+    history: (path: [0.0, 0.25, 0.0], increment: 0.01),",
+            "",
+            ":17:1: the field \"history\" is missing",
+        ),
         (
             "EA: 100.0",
             "EA: 1, EA: 2",
@@ -346,6 +358,10 @@ fn each_fault_of_a_solid_has_one_message_with_its_place() {
         (
             shaped("corners: [(4, 2), (0, 3)], elements: (1, 1)"),
             "folded or flat at its corner",
+        ),
+        (
+            shaped("corners: [(4, 2), (0, 0)], elements: (1, 1)"),
+            "nodes[0].corners: the first corner, (4.0, 2.0), is the upper right one; the lower left one comes first",
         ),
         (
             shaped("corners: [(0, 0), (0, 2), (4, 2), (4, 0)], elements: (1, 1)"),

@@ -122,3 +122,37 @@ fn a_folder_that_does_not_exist_is_named_and_not_a_temporary_file_in_it() {
         );
     }
 }
+
+#[test]
+fn a_file_in_the_place_of_a_folder_is_named() {
+    let directory = tempfile::tempdir().unwrap();
+    std::fs::write(directory.path().join("taken"), "").unwrap();
+    let told = refusal(&directory, &["run", CYCLES, "--csv", "taken/a.csv"]);
+    assert_eq!(
+        told,
+        "taken/a.csv: the file cannot be written: taken is not a folder\n"
+    );
+    for arguments in [
+        &["run", CYCLES, "--vtu", "taken"][..],
+        &["screens", "-o", "taken"],
+        &["man", "-o", "taken"],
+    ] {
+        let told = refusal(&directory, arguments);
+        assert_eq!(
+            told,
+            "taken: the folder cannot be created: a file has this name\n"
+        );
+    }
+}
+
+/// /proc exists, but refuses new files as if it did not.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_folder_that_exists_is_not_said_to_be_missing() {
+    let directory = tempfile::tempdir().unwrap();
+    let told = refusal(&directory, &["show", CYCLES, "-o", "/proc/a.ron"]);
+    assert_eq!(
+        told,
+        "/proc/a.ron: the file cannot be written: the folder /proc is not writable\n"
+    );
+}

@@ -192,6 +192,8 @@ fn bodies_without_any_hold_and_bodies_that_overlap_are_warned_of() {
         "{told}"
     );
     assert!(told.contains("bodies a and b overlap"), "{told}");
+    // Each has nodes inside the other: one warning is enough.
+    assert_eq!(told.matches("overlap").count(), 1, "{told}");
 }
 
 /// The points of faces are nodes of their own, which belong to no body.

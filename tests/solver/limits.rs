@@ -61,6 +61,43 @@ fn a_block_on_a_slope_is_refused_where_friction_is_used_up_and_the_load_is_named
     }
 }
 
+/// With less friction than the slope no load is held. The weight needs an angle of at least that of the slope, whatever the load.
+#[test]
+fn a_block_on_a_slope_with_too_little_friction_is_explained_by_it() {
+    let file = "tests/findings/block-on-a-slope.ron";
+    let (code, told, _) = told(&[
+        file,
+        "--set",
+        "friction.angle=10",
+        "--set",
+        "settings.initial_gaps=adjust",
+    ]);
+    assert_eq!(code, 3);
+    let why = told
+        .lines()
+        .find_map(|line| {
+            line.trim()
+                .strip_prefix("why: friction is too small to hold body b: ")
+        })
+        .unwrap_or_else(|| panic!("{told}"));
+    let (_, numbers) = why.split_once("along the surface with ").unwrap();
+    let (push, numbers) = numbers
+        .split_once(", and its contacts resist with at most ")
+        .unwrap();
+    let (most, angle) = numbers
+        .split_once(" (tan φ F_n + cohesion); it takes a friction angle of at least ")
+        .unwrap();
+    let [push, most] = [push, most].map(|number| number.parse::<f64>().unwrap());
+    let ratio = 10_f64.to_radians().tan() / 11.3099_f64.to_radians().tan();
+    assert!((most / push - ratio).abs() < 1e-3, "{push} {most} {ratio}");
+    assert_eq!(angle, "11.31 degrees");
+    // The modes in which the last attempt stopped would hold the block.
+    assert!(
+        told.contains("17 sticking; these modes would hold it, those that were solved do not"),
+        "{told}"
+    );
+}
+
 /// The same on an elastic wedge, whose slope gives: all contacts slide before the limit load of the rigid slope. The block tips
 /// over the lower corner soon after, and that is marked.
 #[test]

@@ -255,6 +255,33 @@ fn the_two_scenes_of_a_stranger_are_cured_by_what_their_pages_say() {
     }
 }
 
+/// Where friction is too small in every mode, the modes of the start make no difference.
+#[test]
+fn a_start_in_other_modes_is_no_advice_where_friction_is_too_small() {
+    let file = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/tests/findings/block-on-a-slope.ron"
+    );
+    let settings = [
+        ("friction.angle", "10"),
+        ("settings.initial_gaps", "adjust"),
+    ];
+    let settings = settings.map(|(path, value)| (path.to_owned(), value.to_owned()));
+    let scene = Scene::open(file, &settings).unwrap();
+    let mut debugger = Debugger::new(Theme::mono(), vec![], Some(Session::new(scene)));
+    debugger.type_keys("c d");
+    let found = found(&debugger);
+    let why = &found.why[0];
+    assert!(
+        why.starts_with("friction is too small to hold body b"),
+        "{why}"
+    );
+    let tries: Vec<String> = found.tries.iter().map(TryLine::words).collect();
+    let has = |part: &str| tries.iter().any(|line| line.contains(part));
+    assert!(has("a support against that motion"), "{tries:?}");
+    assert!(!has("slave nodes that start"), "{tries:?}");
+}
+
 #[test]
 fn a_ladder_that_reaches_the_load_beyond_the_budget_of_a_trial_is_no_failed_trial() {
     let settings = [("settings.strategy", "table2"), ("history.increment", "1")];

@@ -570,6 +570,22 @@ fn a_panic_of_the_solver_does_not_write_on_the_screen() {
     assert!(!raw.contains("broken down elsewhere"), "{raw:?}");
 }
 
+/// A killed program leaves the terminal on the alternate screen; the next one must not draw around what is there.
+#[test]
+fn the_screen_that_is_taken_over_is_cleared() {
+    let mut session = Start::debugger(&[FLOOR]).go();
+    session.see("nothing is solved yet");
+    session.keys("q");
+    session.end();
+    let raw = String::from_utf8_lossy(&session.seen.lock().unwrap().raw).into_owned();
+    let (_, taken) = raw.split_once("\x1b[?1049h").unwrap();
+    let cleared = taken.find("\x1b[2J");
+    assert!(
+        cleared.is_some() && cleared < taken.find("stickslip"),
+        "{raw:?}"
+    );
+}
+
 /// The parameters of every SGR sequence.
 fn styles(raw: &[u8]) -> Vec<String> {
     let text = String::from_utf8_lossy(raw);
@@ -598,6 +614,7 @@ fn drawn(start: Start) -> Vec<u8> {
     session.type_and_see("S", "◆ 1 held");
     session.type_and_see("c", "the history is complete");
     session.type_and_see(":nonsense\r", "unknown action");
+    session.type_and_see(":incremnt 1\r", "did you mean \"increment\"?");
     session.type_and_see("?", "Move through the iterations");
     session.keys("?");
     session.see_no_more("Move through the iterations");

@@ -6,7 +6,7 @@ use stickslip_debugger::{Colours, JournalTarget, Lesson, Session};
 
 /// Fails: this build has no debugger.
 pub fn ready() -> Result<(), Error> {
-    let text = "this build has no debugger; cargo install stickslip --features tui";
+    let text = "this build has no debugger; cargo install --path . --features tui";
     Err(Error::usage(text))
 }
 

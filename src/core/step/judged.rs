@@ -113,7 +113,10 @@ fn of_node(
         // The distance of the force from the point of the circle that the slip demands.
         (Some(_), Some(angle)) => (f_t * angle.cos() - limit).hypot(f_t * angle.sin()),
     };
-    let unless = |without: bool, amount: f64| if without { 0.0 } else { amount };
+    // A law that is satisfied with room to spare is not violated; NaN stays.
+    let unless = |without: bool, amount: f64| {
+        if without || amount < 0.0 { 0.0 } else { amount }
+    };
     [
         (JudgedLaw::Penetration, unless(!hard, -gap / length)),
         (JudgedLaw::Gap, unless(!acts || !hard, gap / length)),

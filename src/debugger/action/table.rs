@@ -5,6 +5,7 @@
 use super::meaning::{Page, Step, Ui};
 use crate::refusal::{Refusal, refusal};
 use crate::{BranchTarget, Command, ExportScope, Unit};
+use stickslip_scene::format::error::did_you_mean;
 use stickslip_scene::joined;
 
 stickslip_core::words! {
@@ -262,7 +263,15 @@ pub(super) fn begun(word: &str) -> Result<&'static ActionEntry, Refusal> {
         .collect();
     match found[..] {
         [entry] => Ok(entry),
-        [] => Err(refusal!("unknown action '{word}'; ? lists all actions")),
+        [] => {
+            let near = did_you_mean(word, ACTIONS.iter().map(|entry| entry.name));
+            let help = if near.is_empty() {
+                "; ? lists all actions"
+            } else {
+                &near
+            };
+            Err(refusal!("unknown action '{word}'{help}"))
+        }
         _ => {
             let names = joined(found.iter().map(|entry| entry.name), ", ");
             Err(refusal!("'{word}' is ambiguous: {names}"))

@@ -159,6 +159,11 @@ fn kinds(state: &State, failure: &Failure) -> Vec<RemedyKind> {
 
 /// Advice for a cycle of modes.
 pub(super) const FORCE_THIRD_MODE: &str = "forcing a node into its third mode (m)";
+/// Advice for loose bodies, useless where no modes hold them.
+pub(super) const START_TOUCHING: [&str; 2] = [
+    "slave nodes that start sliding or fixed (slaves, start)",
+    "slave nodes that start fixed (slaves, start)",
+];
 
 /// What the user can do in the scene's file or in the debugger.
 pub(super) fn by_hand(state: &State, failure: &Failure) -> &'static [&'static str] {
@@ -179,14 +184,11 @@ pub(super) fn by_hand(state: &State, failure: &Failure) -> &'static [&'static st
             if state.nodes.iter().any(|node| node.mode == Mode::Free) {
                 &[
                     "a support against that motion",
-                    "slave nodes that start sliding or fixed (slaves, start)",
+                    START_TOUCHING[0],
                     "a prescribed displacement instead of the load, until first contact",
                 ]
             } else {
-                &[
-                    "a support against that motion",
-                    "slave nodes that start fixed (slaves, start)",
-                ]
+                &["a support against that motion", START_TOUCHING[1]]
             }
         }
         Failure::Singular(Singular::Unexplained) => {

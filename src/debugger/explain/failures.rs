@@ -4,6 +4,7 @@ use crate::explain::cycles::{cycle, major_cycle};
 use crate::explain::judged;
 use crate::explain::jumped;
 use crate::explain::names::slave;
+use crate::explain::round_off::reach;
 use crate::explain::strain;
 use stickslip_core::interface::census;
 use stickslip_core::linear::singular::LooseMotion;
@@ -59,7 +60,7 @@ pub fn describe(model: &Model, failure: &Failure) -> String {
         ),
         Failure::NotFound(why) => not_found(model, *why),
         Failure::Singular(Singular::Rigid { motions }) => {
-            let bodies = motions.chunk_by(|a, b| a.body == b.body).map(body_motions);
+            let bodies = motions.chunk_by(|a, b| a.body == b.body).map(|motions| body_motions(model, motions));
             format!("unrestrained rigid motion: {}", first_of(bodies, MOST_NODES, "; "))
         }
         Failure::Singular(Singular::Unexplained) => {
@@ -151,31 +152,39 @@ fn not_found(model: &Model, why: NotFound) -> String {
 }
 
 /// The motions of one body.
-fn body_motions(motions: &[RigidMotion]) -> String {
+fn body_motions(model: &Model, motions: &[RigidMotion]) -> String {
     let mut before = "";
     let each = motions.iter().map(|rigid| {
-        let (verb, [x, y]) = match rigid.motion {
-            LooseMotion::Translation(along) => ("move along", along),
-            LooseMotion::Rotation(about) => ("rotate about", about),
+        let (verb, pair) = match rigid.motion {
+            LooseMotion::Translation(along) => ("move along", pair(along, 1.0)),
+            LooseMotion::Rotation(about) => ("rotate about", pair(about, reach(model))),
         };
         let verb = if std::mem::replace(&mut before, verb) == verb {
             String::new()
         } else {
             format!("{verb} ")
         };
-        format!("{verb}({}, {})", rounded(x), rounded(y))
+        format!("{verb}{pair}")
     });
     let each = joined(each, " and ");
     format!("body {} can {}", motions[0].body, each)
 }
 
-/// Four decimals without trailing zeros: coordinates for people.
-fn rounded(x: f64) -> f64 {
-    let rounded = (x * 1e4).round() / 1e4;
-    // Avoid "-0", and infinity for very large numbers.
-    if rounded.is_finite() {
-        rounded + 0.0
-    } else {
-        x
+/// A direction, or a point of a scene of this size, as text; components that are round-off are 0.
+pub(super) fn pair(components: [f64; 2], size: f64) -> String {
+    /// Relative to the size: a center of rotation is a quotient of small rates.
+    const ROUND_OFF: f64 = 1e-9;
+    let [x, y] = components.map(|x| sig4(if x.abs() < ROUND_OFF * size { 0.0 } else { x }));
+    format!("({x}, {y})")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn round_off_is_relative_to_the_size() {
+        assert_eq!(pair([2.0, -2.22e-16], 2.0), "(2, 0)");
+        assert_eq!(pair([3e-6, 2e-15], 1e-5), "(3e-6, 0)");
     }
 }

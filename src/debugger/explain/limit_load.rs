@@ -12,6 +12,8 @@
 //! resistance of each contact of the body against the free motion. With v the relative velocity, friction resists with at
 //! most tan φ F_n + c per |v_t|, of which |F_t| is used; an opening contact yields F_n per v_n until its force is zero.
 //!
+//! A body that no load holds has too little friction if the loads alone show it ([`BodyMotion::exceeds_friction`]).
+//!
 //! A deformable surface can hold a body for a while after all of its contacts slide. Accepted increments are therefore also
 //! checked directly ([`body_without_friction`]).
 
@@ -20,7 +22,7 @@ use super::moves_away::moves_away;
 use super::remedies::{BUDGET, RemedyTrial, attempt_within};
 use super::remedy::{LADDER, Remedy};
 use super::restart::{TrialEnd, restart};
-use super::rigid_motion::BodyMotion;
+use super::rigid_motion::{BodyMotion, is_held_by_contacts_only};
 use super::surface_end::passed_end;
 use super::try_list::helps;
 use super::{names, strain};
@@ -299,10 +301,11 @@ fn of_cut_increment(
     let found = reach(stepper, state, stop)?;
     let LoadLimitProbe { load, from, .. } = found;
     found.ends.as_ref()?;
-    if load == from && from == stepper.model().path[0] {
-        return None;
-    }
     let model = stepper.model().clone();
+    if load == from && from == model.path[0] {
+        let places = model.places(&state.u);
+        return BodyMotion::new(&model, &places, state, motion)?.exceeds_friction(state);
+    }
     let places = model.places(&found.at.start.u);
     let mut held = (*found.at).clone();
     held.nodes.clone_from(&found.at.start.nodes);
@@ -340,25 +343,18 @@ pub fn body_without_friction<'a>(model: &'a Model, contacts: &[ContactRecord]) -
     if !touching.iter().any(|(_, slides)| *slides) {
         return None;
     }
-    let is_free = |node: usize| {
-        let own = model.dofs.of_node(node);
-        model.dofs.equation[own].iter().all(Option::is_some)
-    };
-    let slides = |body: &&Body| {
-        let nodes: HashSet<usize> = body.nodes.iter().copied().collect();
+    let slides = |&body: &usize| {
+        let nodes: HashSet<usize> = model.bodies[body].nodes.iter().copied().collect();
         let mut own = touching
             .iter()
             .filter(|(node, _)| nodes.contains(node))
             .peekable();
-        let others = model.bodies.iter().filter(|other| other.name != body.name);
         own.peek().is_some()
             && own.all(|(_, slides)| *slides)
-            && nodes.iter().all(|&node| is_free(node))
-            && !others
-                .flat_map(|other| &other.nodes)
-                .any(|node| nodes.contains(node))
+            && is_held_by_contacts_only(model, body)
     };
-    model.bodies.iter().find(slides).map(|body| &*body.name)
+    let body = (0..model.bodies.len()).find(slides)?;
+    Some(&*model.bodies[body].name)
 }
 
 /// The rigid motions that a failure reports.

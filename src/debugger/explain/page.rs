@@ -4,7 +4,7 @@
 //! problem that is solved next. Slow parts (trials of remedies, the load that smaller steps reach) come last,
 //! so that the page grows while it is read.
 
-use super::advice::{FORCE_THIRD_MODE, advice, by_hand};
+use super::advice::{FORCE_THIRD_MODE, START_TOUCHING, advice, by_hand};
 use super::attempt::Attempt;
 use super::diagnosis::undecided;
 use super::examination::{DONE, Examination, frozen, nothing};
@@ -487,6 +487,7 @@ impl PageBuilder {
             }
             _ => return,
         };
+        self.by_hand.retain(|text| !START_TOUCHING.contains(text));
         // A body that is held up to a load is not simply loose.
         if matches!(failure, Failure::Singular(Singular::Rigid { .. })) {
             self.what = at(state, "equilibrium ends before this load");

@@ -2,7 +2,9 @@
 //! when they are loose.
 
 use super::facts::{Fact, Part};
+use super::failures::pair;
 use super::names::{arrow, slave};
+use super::round_off::reach;
 use std::collections::HashSet;
 use stickslip_core::contact::projection::{Projection, projection_at, tangent};
 use stickslip_core::fem::pressure::Pressures;
@@ -129,17 +131,17 @@ impl<'a> BodyMotion<'a> {
     fn pushed(&self, state: &State) -> String {
         let power = self.power(state);
         let moves = match self.motion {
-            LooseMotion::Translation([x, y]) => {
-                let [x, y] = [x, y].map(|x| sig4(self.sign * x));
-                format!("moves along ({x}, {y})")
+            LooseMotion::Translation(along) => {
+                let along = along.map(|x| self.sign * x);
+                format!("moves along {}", pair(along, 1.0))
             }
-            LooseMotion::Rotation([x, y]) => {
+            LooseMotion::Rotation(about) => {
                 let way = if self.sign > 0.0 {
                     "anticlockwise"
                 } else {
                     "clockwise"
                 };
-                format!("turns {way} about ({}, {})", sig4(x), sig4(y))
+                format!("turns {way} about {}", pair(about, reach(self.model)))
             }
         };
         let loads = match (power > 0.0, self.motion) {
@@ -177,7 +179,7 @@ impl<'a> BodyMotion<'a> {
             (_, _, 0) if still => {
                 "a sliding node resists only along its normal: its friction force T_max does not grow with the motion"
             }
-            _ if !still => "the modes tried before restrained it even less",
+            _ if !still => "these modes would hold it, those that were solved do not",
             _ => "the sticking nodes do not prevent this motion",
         };
         format!(
@@ -235,16 +237,60 @@ impl<'a> BodyMotion<'a> {
             .collect()
     }
 
+    /// Why friction cannot hold the body in this translation, if equilibrium alone shows it: all contacts face across the
+    /// translation to one side, so that the loads determine the sum of F_n, and neither supports nor other bodies act.
+    pub(super) fn exceeds_friction(&self, state: &State) -> Option<String> {
+        let LooseMotion::Translation(_) = self.motion else {
+            return None;
+        };
+        let rates = self.rates(state);
+        let mut inwards: Option<[f64; 2]> = None;
+        let (mut tangent, mut cohesion) = (0.0_f64, 0.0);
+        for &(s, [v_n, v_t]) in &rates {
+            let contact = &self.model.contacts[s];
+            let side = if self.has(contact.node) { -1.0 } else { 1.0 };
+            let inward = self.over(state, s)?.normal.map(|x| side * x);
+            let first = *inwards.get_or_insert(inward);
+            if v_n.abs() > NONE * v_t.abs() || dot(first, inward) < 1.0 - NONE {
+                return None;
+            }
+            let friction = state.nodes[s].friction(&state.controls.friction[s]);
+            tangent = tangent.max(friction.coefficient());
+            cohesion += friction.cohesion;
+        }
+        if !is_held_by_contacts_only(self.model, self.body) {
+            return None;
+        }
+        let pressed = BodyMotion {
+            motion: LooseMotion::Translation(inwards?),
+            sign: 1.0,
+            nodes: self.nodes.clone(),
+            ..*self
+        };
+        let (push, pressed) = (self.power(state), pressed.power(state).max(0.0));
+        let most = tangent * pressed + cohesion;
+        if most >= push * (1.0 - NONE) {
+            return None;
+        }
+        let enough = ((push - cohesion) / pressed).atan().to_degrees();
+        Some(format!(
+            "friction is too small to hold body {}: the loads push it along the surface with {}, and its contacts resist with at most {} (tan φ F_n + cohesion); it takes a friction angle of at least {} degrees",
+            self.name(),
+            sig4(push),
+            sig4(most),
+            sig4(enough)
+        ))
+    }
+
     /// The contact or support that would stop the motion.
     fn stopped(&self, state: &State) -> String {
         let motion = match self.motion {
             LooseMotion::Translation(along) => {
-                let [x, y] = along.map(|x| sig4(self.sign * x));
-                format!("the motion along ({x}, {y})")
+                let along = along.map(|x| self.sign * x);
+                format!("the motion along {}", pair(along, 1.0))
             }
             LooseMotion::Rotation(about) => {
-                let [x, y] = about.map(sig4);
-                format!("the rotation about ({x}, {y})")
+                format!("the rotation about {}", pair(about, reach(self.model)))
             }
         };
         let mut closing: Vec<(f64, usize)> = Vec::new();
@@ -306,6 +352,20 @@ impl<'a> BodyMotion<'a> {
             .map(|(at, v)| [at, v.map(|x| x / largest)])
             .collect()
     }
+}
+
+/// Whether no support acts on a body, and no other body has nodes of it.
+pub(super) fn is_held_by_contacts_only(model: &Model, body: usize) -> bool {
+    let nodes: HashSet<usize> = model.bodies[body].nodes.iter().copied().collect();
+    let is_free = |&node: &usize| {
+        let own = model.dofs.of_node(node);
+        model.dofs.equation[own].iter().all(Option::is_some)
+    };
+    let others = model.bodies.iter().enumerate().filter(|(k, _)| *k != body);
+    nodes.iter().all(is_free)
+        && !others
+            .flat_map(|(_, other)| &other.nodes)
+            .any(|node| nodes.contains(node))
 }
 
 /// Since when the body is loose.

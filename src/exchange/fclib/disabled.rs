@@ -29,6 +29,6 @@ pub fn write(_: &Local, _: &str) -> Result<Vec<u8>, FormatError> {
 
 fn not_built() -> FormatError {
     FormatError::whole(
-        "this build has no fclib (HDF5) support; cargo install stickslip --features fclib",
+        "this build has no fclib (HDF5) support; cargo install --path . --features fclib",
     )
 }

@@ -198,7 +198,7 @@ const ONE_BY_ONE: &[(&str, Treatment)] = &[
     (
         "CONTACT PAIR",
         read(
-            "NODE TO SURFACE; SURFACE TO SURFACE with LINEAR and TIED (HARD as node to surface, with a warning); masters are the sides of the second surface",
+            "NODE TO SURFACE; SURFACE TO SURFACE with LINEAR and TIED (HARD as node to surface, with a note); masters are the sides of the second surface",
             Model,
             &["INTERACTION", "TYPE", "SMALLSLIDING", "ADJUST"],
             Reader::pair,

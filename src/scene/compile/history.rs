@@ -3,6 +3,7 @@
 use super::super::limits;
 use crate::format::error::{Fault, at, bail, fault};
 use crate::format::spec::History;
+use crate::sig4;
 use stickslip_core::{Body, Control, Settings, Touch, counted};
 
 /// Rejects an empty or endless path.
@@ -47,10 +48,14 @@ pub(super) fn history(history: &History) -> Result<(), Fault> {
     if count > limits::INCREMENTS {
         let message = if history.increments.is_empty() {
             format!(
-                "the history would have {count:e} increments of {increment:?}; at most a million are allowed"
+                "the history would have {} increments of {increment:?}; at most a million are allowed",
+                sig4(count)
             )
         } else {
-            format!("the history would have {count:e} increments; at most a million are allowed")
+            format!(
+                "the history would have {} increments; at most a million are allowed",
+                sig4(count)
+            )
         };
         return Err(Fault::new(size, message));
     }

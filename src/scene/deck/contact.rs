@@ -63,7 +63,7 @@ impl DeckObjects<'_> {
             if pair.faces && by.is_node() {
                 self.add_note(
                     pair.place,
-                    "warning: SURFACE TO SURFACE is solved as node to surface: hard contact holds at each slave node, not at points \
+                    "SURFACE TO SURFACE is solved as node to surface: hard contact holds at each slave node, not at points \
                      of the sides, so forces differ from CalculiX's, by up to 58 % with one element per side and less on \
                      finer meshes; PRESSURE-OVERCLOSURE=LINEAR or TIED is solved as written",
                 );

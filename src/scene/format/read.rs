@@ -93,6 +93,13 @@ fn path_of(text: &str, error: &SpannedError) -> Path {
         E::NoSuchStructField { found, .. } => path = path.then(found.as_str()),
         _ => {}
     }
+    // Behind a trailing comma there is no value.
+    if let Some((Step::Index(_), enclosing)) = path.0.split_last() {
+        let enclosing = Path(enclosing.to_vec());
+        if locate(text, &enclosing) == locate(text, &path) {
+            path = enclosing;
+        }
+    }
     path
 }
 
