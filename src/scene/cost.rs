@@ -4,10 +4,10 @@ use super::Scene;
 use super::compile::increments;
 use super::{gaps, limits};
 use crate::format::error::some_of;
-use crate::groups::marked;
 use crate::joined;
 use crate::number::sig6;
 use std::fmt;
+use stickslip_core::groups::marked;
 use stickslip_core::model::{Beam, Form, Linear, LinearSolver};
 use stickslip_core::words::is_default;
 use stickslip_core::{

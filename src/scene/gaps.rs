@@ -2,13 +2,13 @@
 //! effect of `settings.initial_gaps`.
 
 use crate::few;
-use crate::groups::marked;
 use crate::number::sig4;
 use crate::overlaps;
 use crate::pressed;
 use stickslip_core::contact::facing::{MOST as MOST_SURFACES, faced};
 use stickslip_core::contact::projection::{project, projection_at};
 use stickslip_core::fem::lagrange;
+use stickslip_core::groups::marked;
 use stickslip_core::plane::{dot, range};
 use stickslip_core::{
     Body, Contact, InitialGaps, Model, Node, Surface, SurfaceElement, SurfacePoint,

@@ -1,6 +1,8 @@
 //! A sparse matrix over the contacts, column by column: square blocks of D components, the normal one and one tangential one, or
 //! two of them in space.
 
+use crate::groups::Connected;
+
 /// A square matrix over the contacts, stored by its blocks.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Blocks<const D: usize = 2> {
@@ -147,34 +149,12 @@ impl<const D: usize> Blocks<D> {
 
     /// The independent parts: groups of contacts between which there are no blocks, each in ascending order.
     pub fn parts(&self) -> Vec<Vec<usize>> {
-        let mut leader: Vec<usize> = (0..self.contacts()).collect();
+        let mut groups = Connected::new(self.contacts());
         for j in 0..self.contacts() {
-            for (i, _) in self.column(j) {
-                let (a, b) = (root(&mut leader, i), root(&mut leader, j));
-                leader[a.max(b)] = a.min(b);
-            }
+            self.column(j).for_each(|(i, _)| groups.join(i, j));
         }
-        let mut number = vec![None; self.contacts()];
-        let mut parts: Vec<Vec<usize>> = Vec::new();
-        for k in 0..self.contacts() {
-            let first = root(&mut leader, k);
-            let part = *number[first].get_or_insert(parts.len());
-            if part == parts.len() {
-                parts.push(Vec::new());
-            }
-            parts[part].push(k);
-        }
-        parts
+        groups.parts()
     }
-}
-
-/// The smallest known contact of the part that contains `k`.
-fn root(leader: &mut [usize], mut k: usize) -> usize {
-    while leader[k] != k {
-        leader[k] = leader[leader[k]];
-        k = leader[k];
-    }
-    k
 }
 
 #[cfg(test)]
