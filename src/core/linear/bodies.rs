@@ -9,8 +9,8 @@ use crate::executor::{Executor, SequentialExecutor};
 use crate::fem::assembly::history_len;
 use crate::fem::deformation::deformation;
 use crate::linalg::SolveError;
-use crate::linear::drag::add_drag;
 use crate::linear::point_forces::PointForces;
+use crate::linear::residual::loads;
 use crate::linear::singular;
 use crate::linear::sizes::Sizes;
 use crate::linear::system::System;
@@ -497,14 +497,8 @@ impl Source for Bodies {
             scales,
         };
         let mut verdict = bench.judge.interface(&seen, &mut bench.contact);
-        bench.load.fill(0.0);
-        for load in &model.loads {
-            bench.load[load.dof] += load.value * load.scale.at(at.last_target);
-        }
-        let factor = |scale: &Factor| scale.at(at.last_target);
-        let pressures = &self.system.pressures;
-        pressures.each(model, at.u, factor, |dof, part| bench.load[dof] += part);
-        add_drag(model, at, &self.system.sizes, &mut bench.load);
+        let known = (&self.system.pressures, &self.system.sizes);
+        loads(model, at, at.last_target, known, &mut bench.load);
         let forces = Forces {
             internal: self.system.internal(),
             load: &bench.load,

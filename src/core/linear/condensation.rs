@@ -651,7 +651,7 @@ fn direct_equations(model: &Model) -> Option<Vec<usize>> {
 }
 
 /// The equations of all slave nodes and of the surfaces that they may touch, ascending.
-fn interface_equations(model: &Model) -> Vec<usize> {
+pub(super) fn interface_equations(model: &Model) -> Vec<usize> {
     let slaves = model.contacts.iter().flat_map(Contact::carriers);
     let slaves = slaves.map(|(node, _)| node);
     let mut equations = equations_of(model, slaves);

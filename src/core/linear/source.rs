@@ -5,10 +5,10 @@
 //! the source receives the forces, moves its bodies, projects the slave nodes on their surfaces, and linearises again. Anything
 //! that implements this trait can be stepped.
 
-use crate::contact::state::{in_mode, largest_drift};
 use crate::interface::minor_history::Input;
 use crate::interface::rows;
 use crate::linalg::SolveError;
+use crate::linear::bodies::value;
 use crate::model::{Axis, MonitorQuantity};
 use crate::plane::max_abs;
 use crate::{
@@ -19,7 +19,7 @@ use crate::{
 use std::sync::Arc;
 
 /// Estimated norm of the scaled inverse from which on the equations are suspected to be singular.
-pub(super) const SUSPICIOUS: f64 = 1e12;
+const SUSPICIOUS: f64 = 1e12;
 /// Lower bound of the tolerance for relative violations of a law.
 const TOLERANCE: f64 = 1e-8;
 
@@ -66,6 +66,24 @@ pub struct LinearisationPoint<'a> {
 }
 
 impl LinearisationPoint<'_> {
+    /// The contacts of the interface problem, from the kinematics and the prescribed motion of each.
+    pub(super) fn nodes(
+        &self,
+        of: impl Fn(usize) -> (Option<NodeKinematics>, [f64; 2]),
+    ) -> Vec<ProblemNode> {
+        let node = |(slave, state): (usize, &ContactState)| {
+            let (kinematics, prescribed) = of(slave);
+            ProblemNode {
+                slave,
+                kinematics,
+                prescribed,
+                friction: state.friction(&self.friction[slave]),
+                state: *state,
+            }
+        };
+        self.contacts.iter().enumerate().map(node).collect()
+    }
+
     /// Norms of the largest out-of-balance force and its scale, before the interface conditions.
     pub fn norms(&self, force: f64, scale: f64) -> Norms {
         Norms {
@@ -151,6 +169,16 @@ pub enum SolveResult {
     NearlySingular,
     /// There is no solution, or it cannot be computed.
     Not,
+}
+
+impl SolveResult {
+    /// The result for an estimated norm of the scaled inverse.
+    pub(super) fn from_norm(norm: f64) -> SolveResult {
+        match norm > SUSPICIOUS {
+            true => SolveResult::NearlySingular,
+            false => SolveResult::Well,
+        }
+    }
 }
 
 /// The deformable part under the interface.
@@ -268,10 +296,7 @@ pub trait Source: Send {
         for k in 0..at.contacts.len() {
             condensed.read(k, [0.0; 2]);
         }
-        match norm > SUSPICIOUS {
-            true => SolveResult::NearlySingular,
-            false => SolveResult::Well,
-        }
+        SolveResult::from_norm(norm)
     }
 
     /// Change of the load factor in the last solve, if it is an unknown ([`LinearisationPoint::along`]).
@@ -300,19 +325,8 @@ pub trait Source: Send {
     fn problem(&mut self, at: &LinearisationPoint<'_>) -> Result<InterfaceProblem, SolveError> {
         let force = self.norms(at).scale;
         let condensed = self.condensed().ok_or(SolveError::Singular)?;
-        let nodes = at
-            .contacts
-            .iter()
-            .enumerate()
-            .map(|(k, state)| ProblemNode {
-                slave: k,
-                kinematics: self.kinematics(k),
-                prescribed: [0.0; 2],
-                friction: state.friction(&at.friction[k]),
-                state: *state,
-            });
         Ok(InterfaceProblem {
-            nodes: nodes.collect(),
+            nodes: at.nodes(|k| (self.kinematics(k), [0.0; 2])),
             relation: condensed.relation.clone(),
             force,
             length: self.length(),
@@ -506,7 +520,6 @@ pub trait Source: Send {
     /// Value of a monitor in the state of the last linearisation.
     fn monitor(&self, watched: &MonitorQuantity, at: &LinearisationPoint<'_>) -> f64 {
         match watched {
-            MonitorQuantity::Displacement { dof } => at.u[*dof],
             MonitorQuantity::Contact { slaves, axis } => {
                 let of = |&s: &usize| match axis {
                     Axis::X => -at.contacts[s].f_t,
@@ -514,12 +527,8 @@ pub trait Source: Send {
                 };
                 slaves.iter().map(of).sum()
             }
-            MonitorQuantity::Modes { slaves, mode } => in_mode(at.contacts, slaves, *mode),
-            MonitorQuantity::Drift { slaves } => largest_drift(at.contacts, slaves),
-            MonitorQuantity::Arc => at.arc,
-            MonitorQuantity::Pressure { .. }
-            | MonitorQuantity::Reported { .. }
-            | MonitorQuantity::Reaction { .. } => f64::NAN,
+            MonitorQuantity::Pressure { .. } => f64::NAN,
+            _ => value(watched, &[], at),
         }
     }
 }

@@ -16,7 +16,6 @@ use crate::interface::blocks::Blocks;
 use crate::interface::rows;
 use crate::linalg::{DenseFactors, Factors, Pattern, SolveError, largest};
 use crate::linear::bodies::value;
-use crate::linear::source::SUSPICIOUS;
 use crate::linear::sparse_contacts::sparse_contacts;
 use crate::linear::violation::violation;
 use crate::model::{Bond, Linear, MonitorQuantity};
@@ -243,15 +242,7 @@ impl SparseInterface {
 
     /// The contacts for searches.
     fn nodes(&self, at: &LinearisationPoint<'_>) -> Vec<ProblemNode> {
-        let nodes = at.contacts.iter().enumerate();
-        let node = |(slave, state): (usize, &ContactState)| ProblemNode {
-            slave,
-            kinematics: self.kinematics(slave),
-            prescribed: [0.0; 2],
-            friction: state.friction(&at.friction[slave]),
-            state: *state,
-        };
-        nodes.map(node).collect()
+        at.nodes(|contact| (self.kinematics(contact), [0.0; 2]))
     }
 }
 
@@ -371,10 +362,7 @@ impl Source for SparseInterface {
             self.finish();
             norm = inverse;
         }
-        match norm > SUSPICIOUS {
-            true => SolveResult::NearlySingular,
-            false => SolveResult::Well,
-        }
+        SolveResult::from_norm(norm)
     }
 
     fn increment(&self, contact: usize) -> NodeIncrement {
