@@ -9,6 +9,14 @@ pub fn marked<'a>(count: usize, nodes: impl IntoIterator<Item = &'a usize>) -> V
     marked
 }
 
+/// The different items, ascending.
+pub fn distinct<T: Ord>(items: impl IntoIterator<Item = T>) -> Vec<T> {
+    let mut items: Vec<T> = items.into_iter().collect();
+    items.sort_unstable();
+    items.dedup();
+    items
+}
+
 /// The groups, by the representative of each node: a node of its group with a smaller number, or itself.
 pub struct Connected(Vec<usize>);
 

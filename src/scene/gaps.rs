@@ -8,7 +8,7 @@ use crate::pressed;
 use stickslip_core::contact::facing::{MOST as MOST_SURFACES, faced};
 use stickslip_core::contact::projection::{project, projection_at};
 use stickslip_core::fem::lagrange;
-use stickslip_core::groups::marked;
+use stickslip_core::groups::{distinct, marked};
 use stickslip_core::plane::{dot, range};
 use stickslip_core::{
     Body, Contact, InitialGaps, Model, Node, Surface, SurfaceElement, SurfacePoint,
@@ -254,14 +254,8 @@ fn unheld(model: &Model) -> Vec<String> {
     let slaves: Vec<usize> = contacts
         .flat_map(|contact| contact.carriers().map(|(node, _)| node))
         .collect();
-    let mut met: Vec<usize> = model
-        .contacts
-        .iter()
-        .flat_map(|contact| &contact.surfaces)
-        .copied()
-        .collect();
-    met.sort_unstable();
-    met.dedup();
+    let contacts = model.contacts.iter();
+    let met = distinct(contacts.flat_map(|contact| contact.surfaces.iter().copied()));
     let masters = met
         .iter()
         .flat_map(|&k| model.surfaces[k].elements.iter().flatten());

@@ -20,6 +20,7 @@ use std::collections::{BTreeSet, HashMap};
 use std::fmt::Write;
 use std::sync::Arc;
 use stickslip_core::Model;
+use stickslip_core::groups::distinct;
 use stickslip_scene::joined;
 
 /// Default tolerance: runs whose ends differ by more than this fraction of the largest value are on different
@@ -303,14 +304,8 @@ impl Map {
             n => format!("{n} scenes"),
         };
         made += &changes(study);
-        let mut named: Vec<usize> = self
-            .cells
-            .iter()
-            .flatten()
-            .filter_map(|c| Some(c.reference?.0))
-            .collect();
-        named.sort_unstable();
-        named.dedup();
+        let cells = self.cells.iter().flatten();
+        let named = distinct(cells.filter_map(|c| Some(c.reference?.0)));
         const SHOWN: usize = 4;
         let names = joined(named.iter().take(SHOWN).map(|&k| self.name(k)), "; ");
         let more = match named.len().saturating_sub(SHOWN) {

@@ -1,7 +1,7 @@
 //! A sparse matrix over the contacts, column by column: square blocks of D components, the normal one and one tangential one, or
 //! two of them in space.
 
-use crate::groups::Connected;
+use crate::groups::{Connected, distinct};
 
 /// A square matrix over the contacts, stored by its blocks.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,11 +24,8 @@ impl<const D: usize> Blocks<D> {
         contacts: usize,
         entries: impl Iterator<Item = (usize, usize, f64)> + Clone,
     ) -> Self {
-        let mut places: Vec<(usize, usize)> =
-            entries.clone().map(|(i, j, _)| (j / D, i / D)).collect();
-        places.extend((0..contacts).map(|k| (k, k)));
-        places.sort_unstable();
-        places.dedup();
+        let places = entries.clone().map(|(i, j, _)| (j / D, i / D));
+        let places = distinct(places.chain((0..contacts).map(|k| (k, k))));
         let mut blocks = Blocks::at(contacts, &places);
         for (i, j, value) in entries {
             if let Some(block) = blocks.find(i / D, j / D) {

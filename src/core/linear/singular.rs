@@ -4,13 +4,14 @@
 //! Motions that satisfy all conditions are resisted only by existing stresses.
 
 use crate::contact::projection::{Projection, tangent};
+use crate::groups::distinct;
 use crate::model::BodyKind;
 use crate::model::Component;
 use crate::plane::{max_abs, minus};
 use crate::{ContactState, Mode, Model};
 use nalgebra::{DMatrix, RowVector3};
 use serde::{Deserialize, Serialize};
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeMap, HashMap};
 
 /// Condition values and amplitudes below this count as zero; both are of order one.
 const ZERO: f64 = 1e-9;
@@ -304,8 +305,8 @@ fn eliminated(rows: &[Row], body: usize, pivots: &mut Vec<(usize, Row)>) -> Vec<
     if rows.is_empty() {
         return Vec::new();
     }
-    let others: BTreeSet<usize> = rows.iter().flat_map(BTreeMap::keys).copied().collect();
-    let others: Vec<usize> = others.into_iter().filter(|c| c / 3 != body).collect();
+    let columns = rows.iter().flat_map(BTreeMap::keys).copied();
+    let others = distinct(columns.filter(|c| c / 3 != body));
     let own = DMatrix::from_fn(rows.len(), 3, |i, j| entry(&rows[i], 3 * body + j));
     let mut rest = DMatrix::from_fn(rows.len(), others.len(), |i, j| entry(&rows[i], others[j]));
     let qr = own.col_piv_qr();

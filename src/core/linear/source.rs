@@ -464,7 +464,7 @@ pub trait Source: Send {
                     numbers: JudgedNumbers {
                         gap: over.gap,
                         slip: -slip.unwrap_or(0.0),
-                        limit: at.friction[k].coefficient() * state.f_n + at.friction[k].cohesion,
+                        limit: at.friction[k].limit(state.f_n),
                         f_n: state.f_n,
                         f_t: state.f_t,
                         deviation: None,
@@ -547,7 +547,7 @@ fn against(
     if !pressed {
         return vec![(JudgedLaw::Penetration, (-gap / length).max(0.0))];
     }
-    let bound = friction.coefficient() * state.f_n + friction.cohesion;
+    let bound = friction.limit(state.f_n);
     let mut laws = vec![
         (JudgedLaw::Gap, gap.abs() / length),
         (JudgedLaw::Tension, (-state.f_n / force).max(0.0)),
