@@ -21,6 +21,7 @@ use std::fmt::Write;
 use std::sync::Arc;
 use stickslip_core::Model;
 use stickslip_core::groups::distinct;
+use stickslip_core::plane::max_abs;
 use stickslip_scene::joined;
 
 /// Default tolerance: runs whose ends differ by more than this fraction of the largest value are on different
@@ -130,7 +131,7 @@ impl MapRun {
                 name: run.monitors[k].clone(),
                 kind: kind(model, &model.monitors[k].of),
                 end: value(run.last()),
-                largest: all.map(|row| value(row).abs()).fold(0.0, f64::max),
+                largest: max_abs(all.map(value)),
             }
         };
         Some(MapRun {

@@ -429,8 +429,7 @@ pub trait Source: Send {
 
     /// Largest displacement between two states (length).
     fn moved(&self, u: &[f64], before: &[f64]) -> f64 {
-        let moved = u.iter().zip(before).map(|(u, before)| (u - before).abs());
-        moved.fold(0.0, f64::max)
+        max_abs(u.iter().zip(before).map(|(u, before)| u - before))
     }
 
     /// How far a contact slid since the last accepted state, along t (length). `None` if the source does not measure it; its slip

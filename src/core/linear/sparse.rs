@@ -480,7 +480,7 @@ impl Source for SparseInterface {
 
     fn moved(&self, u: &[f64], before: &[f64]) -> f64 {
         let nodes = u.iter().zip(before).take(self.first_force);
-        nodes.fold(0.0, |most: f64, (u, before)| most.max((u - before).abs()))
+        max_abs(nodes.map(|(u, before)| u - before))
     }
 
     fn slid(&self, contact: usize, at: &LinearisationPoint<'_>) -> Option<f64> {
