@@ -256,9 +256,7 @@ fn unheld(model: &Model) -> Vec<String> {
         .collect();
     let contacts = model.contacts.iter();
     let met = distinct(contacts.flat_map(|contact| contact.surfaces.iter().copied()));
-    let masters = met
-        .iter()
-        .flat_map(|&k| model.surfaces[k].elements.iter().flatten());
+    let masters = met.iter().flat_map(|&k| model.surfaces[k].nodes());
     let at_contact = marked(model.nodes.len(), slaves.iter().chain(masters));
     let touches = |body: &Body| body.nodes.iter().any(|&node| at_contact[node]);
     model

@@ -173,7 +173,7 @@ fn nearest_node(
         .iter()
         .map(|&surface| &surfaces[surface])
         .filter(|surface| surface.smooth.is_empty())
-        .flat_map(|surface| surface.elements.iter().flatten())
+        .flat_map(|surface| surface.nodes())
         .map(|&node| {
             let [x, y] = minus(slave, positions[node]);
             x * x + y * y

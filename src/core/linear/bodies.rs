@@ -8,6 +8,7 @@ use crate::contact::tracking::Ground;
 use crate::executor::{Executor, SequentialExecutor};
 use crate::fem::assembly::history_len;
 use crate::fem::deformation::deformation;
+use crate::groups::marked;
 use crate::linalg::SolveError;
 use crate::linear::point_forces::PointForces;
 use crate::linear::residual::loads;
@@ -15,7 +16,7 @@ use crate::linear::singular;
 use crate::linear::sizes::Sizes;
 use crate::linear::system::System;
 use crate::linear::tangent::Tangent;
-use crate::model::{Axis, Contact, Factor, MonitorQuantity};
+use crate::model::{Axis, Contact, Factor, MonitorQuantity, Surface};
 use crate::plane::larger;
 use crate::{
     ContactState, Deformation, Estimate, Friction, InterfaceProblem, JudgedLaw, LinearisationPoint,
@@ -170,11 +171,8 @@ fn pressure(contacts: &[Contact], states: &[ContactState], slaves: &[usize], she
 /// Whether the force of each contact can be computed from the stresses. It cannot if a support or a second contact contributes to
 /// its node's force, or if the node belongs to a master surface.
 fn stresses_tell(model: &Model) -> Vec<bool> {
-    let mut master = vec![false; model.nodes.len()];
-    for surface in model.surfaces.iter().filter(|surface| !surface.rigid) {
-        let nodes = surface.elements.iter().flatten();
-        nodes.for_each(|&node| master[node] = true);
-    }
+    let masters = model.surfaces.iter().filter(|surface| !surface.rigid);
+    let master = marked(model.nodes.len(), masters.flat_map(Surface::nodes));
     let mut contacts = vec![0; model.nodes.len()];
     model.contacts.iter().for_each(|c| contacts[c.node] += 1);
     let tell = |node: usize| {

@@ -665,7 +665,7 @@ fn master_equations(model: &Model) -> Vec<usize> {
         .iter()
         .flat_map(|slave| &slave.surfaces)
         .filter(|&&surface| !model.surfaces[surface].rigid)
-        .flat_map(|&surface| model.surfaces[surface].elements.iter().flatten());
+        .flat_map(|&surface| model.surfaces[surface].nodes());
     distinct(equations_of(model, masters.copied()))
 }
 

@@ -172,7 +172,7 @@ fn deepest(model: &Model, u: &[f64]) -> Option<PenetratingMaster> {
         let masters = slaves
             .iter()
             .flat_map(|slave| &slave.surfaces)
-            .flat_map(|&surface| model.surfaces[surface].elements.iter().flatten().copied())
+            .flat_map(|&surface| model.surfaces[surface].nodes().copied())
             .filter(|node| !body.nodes.contains(node));
         let masters = distinct(masters);
         if masters.is_empty() {

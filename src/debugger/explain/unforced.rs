@@ -197,7 +197,7 @@ fn free_bodies(model: &Model) -> Vec<FreeBody> {
     };
     let surfaces = model.surfaces.iter();
     let under: Vec<Vec<usize>> = surfaces
-        .map(|surface| bodies_of(&mut surface.elements.iter().flatten().copied()))
+        .map(|surface| bodies_of(&mut surface.nodes().copied()))
         .collect();
     let mut contacts: Vec<Vec<usize>> = vec![Vec::new(); model.bodies.len()];
     for (number, contact) in model.contacts.iter().enumerate() {
