@@ -9,7 +9,7 @@ use stickslip_core::contact::facing::{MOST as MOST_SURFACES, faced};
 use stickslip_core::contact::projection::{project, projection_at};
 use stickslip_core::fem::lagrange;
 use stickslip_core::groups::{distinct, marked};
-use stickslip_core::plane::{dot, range};
+use stickslip_core::plane::{dot, plus, range};
 use stickslip_core::{
     Body, Contact, InitialGaps, Model, Node, Surface, SurfaceElement, SurfacePoint,
 };
@@ -219,7 +219,7 @@ fn outward(model: &Model) -> Vec<Option<[f64; 2]>> {
             let xi = -1.0 + 2.0 * k as f64 / count as f64;
             let n = normal(edge, &model.nodes, &lagrange::shape(edge.len(), xi).d);
             let sum = all[node].get_or_insert([0.0; 2]);
-            *sum = [sum[0] + n[0], sum[1] + n[1]];
+            *sum = plus(*sum, n);
         }
     }
     for sum in all.iter_mut().flatten() {

@@ -17,7 +17,7 @@ use crate::linear::sizes::Sizes;
 use crate::linear::system::System;
 use crate::linear::tangent::Tangent;
 use crate::model::{Axis, Contact, Factor, MonitorQuantity, Surface};
-use crate::plane::larger;
+use crate::plane::{larger, plus};
 use crate::{
     ContactState, Deformation, Estimate, Friction, InterfaceProblem, JudgedLaw, LinearisationPoint,
     Mode, Model, NodeIncrement, NodeKinematics, Norms, Scales, Settings, Singular, SolveResult,
@@ -420,11 +420,9 @@ impl Source for Bodies {
         let scales = self.scales(at.chosen.tolerance, after);
         let (model, bench) = (&self.model, &mut self.bench);
         bench.before.clear();
-        let at_start = model.dofs.first.iter().zip(&model.nodes);
-        bench.before.extend(at_start.map(|(&first, node)| {
-            let u = &at.accepted.u[first..first + 2];
-            [node.at[0] + u[0], node.at[1] + u[1]]
-        }));
+        let nodes = 0..model.nodes.len();
+        let at_start = nodes.map(|node| model.place(at.accepted.u, node));
+        bench.before.extend(at_start);
         bench.forces.clear();
         let forces = at.contacts.iter().map(|state| state.force());
         bench.forces.extend(forces);
@@ -523,7 +521,7 @@ impl Source for Bodies {
         let out = |k: usize| self.bench.out[1].get(k).copied().unwrap_or_default();
         for (k, ((state, was), contact)) in states.zip(&self.model.contacts).enumerate() {
             let (at, out) = (before[contact.node], out(k));
-            let at = [at[0] + out[0], at[1] + out[1]];
+            let at = plus(at, out);
             let touched = Judge::touched(&self.model.surfaces, contact, at, before, near);
             let Some(touched) = touched.filter(|_| !contact.bond.is_tied()) else {
                 continue;

@@ -7,7 +7,7 @@ use crate::contact::projection::{Projection, tangent};
 use crate::groups::distinct;
 use crate::model::BodyKind;
 use crate::model::Component;
-use crate::plane::{max_abs, minus};
+use crate::plane::{max_abs, minus, plus};
 use crate::{ContactState, Mode, Model};
 use nalgebra::{DMatrix, RowVector3};
 use serde::{Deserialize, Serialize};
@@ -111,7 +111,7 @@ impl<'a> Frame<'a> {
             let mut sum = [0.0; 2];
             for &n in &body.nodes {
                 owners.entry(n).or_insert(b);
-                sum = [sum[0] + positions[n][0], sum[1] + positions[n][1]];
+                sum = plus(sum, positions[n]);
             }
             centers.push(sum.map(|s| s / body.nodes.len() as f64));
         }

@@ -102,9 +102,8 @@ impl SparseInterface {
     }
 
     fn place(&mut self, u: &[f64]) {
-        let nodes = self.model.nodes.iter().zip(&self.model.dofs.first);
-        for (position, (node, &first)) in self.positions.iter_mut().zip(nodes) {
-            *position = [node.at[0] + u[first], node.at[1] + u[first + 1]];
+        for (node, position) in self.positions.iter_mut().enumerate() {
+            *position = self.model.place(u, node);
         }
     }
 

@@ -6,6 +6,7 @@ use crate::areas::sides;
 use crate::format::error::{AtPath, Fault, Path, bail};
 use std::collections::{BTreeMap, HashMap, HashSet};
 use stickslip_core::model::{Body, Elastic, Plane, PressedFace, Update};
+use stickslip_core::plane::plus;
 
 /// Faces under pressure of bodies with large displacements, and of those with small ones.
 #[derive(Default)]
@@ -78,7 +79,7 @@ pub(super) fn dead(names: &Names, faces: &[PressedFace], value: f64) -> Vec<(usi
         };
         for (node, force) in tractions::on_nodes(names, &face.nodes, &load) {
             let sum = sums.entry(node).or_insert([0.0; 2]);
-            *sum = [sum[0] + force[0], sum[1] + force[1]];
+            *sum = plus(*sum, force);
         }
     }
     sums.into_iter().collect()

@@ -9,7 +9,7 @@ use crate::contact::facing::{MOST, faced};
 use crate::contact::point_force;
 use crate::fem::lagrange::{MAX_NODES, gauss, legendre};
 use crate::model::{Contact, PointGive, Surface};
-use crate::plane::dot;
+use crate::plane::{dot, plus};
 use crate::{ElementPositions, SurfaceElement, SurfacePoint};
 
 /// The interface in one configuration, with its forces.
@@ -31,7 +31,7 @@ impl LoadedInterface<'_> {
     /// Position at which a slave node is judged: its own, plus the offset.
     pub fn point(&self, slave: usize) -> [f64; 2] {
         let (at, out) = (self.now[self.contacts[slave].node], self.out.get(slave));
-        out.map_or(at, |way| [at[0] + way[0], at[1] + way[1]])
+        out.map_or(at, |way| plus(at, *way))
     }
 }
 
