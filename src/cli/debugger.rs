@@ -8,29 +8,43 @@ use std::path::PathBuf;
 use stickslip_debugger::{JournalTarget, Recording, Session};
 
 #[derive(Debug, clap::Args)]
+#[command(mut_arg("journal", |journal| journal.requires("scene")))]
 pub struct Args {
     /// A scene file, or the name of a built-in scene; without one, the debugger lists the built-in ones. The .cel file of a
     /// finished CalculiX run, or an exchange written by `attach --exchange`, opens that run read-only
     scene: Option<String>,
     #[command(flatten)]
     set: SetArgs,
+    #[command(flatten)]
+    keep: JournalArgs,
+}
+
+/// The journal of a session.
+#[derive(Debug, clap::Args)]
+pub struct JournalArgs {
     /// Writes the session's journal to a new file [default: in the user's state directory]
-    #[arg(
-        long,
-        value_name = "FILE",
-        conflicts_with = "no_journal",
-        requires = "scene"
-    )]
+    #[arg(long, value_name = "FILE", conflicts_with = "no_journal")]
     journal: Option<PathBuf>,
     /// Writes no journal; the session cannot be resumed
     #[arg(long)]
     no_journal: bool,
 }
 
+impl JournalArgs {
+    /// Where it is written.
+    pub fn target(&self) -> JournalTarget {
+        match &self.journal {
+            _ if self.no_journal => JournalTarget::Nowhere,
+            Some(file) => JournalTarget::File(file.clone()),
+            None => JournalTarget::Default,
+        }
+    }
+}
+
 impl Args {
     /// An option that cannot be combined with a read-only run.
     fn changed(&self) -> Option<&'static str> {
-        match (self.set.set.is_empty(), &self.journal) {
+        match (self.set.set.is_empty(), &self.keep.journal) {
             (false, _) => Some("--set"),
             (true, Some(_)) => Some("--journal"),
             (true, None) => None,
@@ -56,12 +70,7 @@ pub fn main(args: Args) -> Result<Exit, Error> {
         DEBUGGER,
         &format!("run {scene} --csv -` solves without one"),
     )?;
-    let keep = match args.journal {
-        _ if args.no_journal => JournalTarget::Nowhere,
-        Some(file) => JournalTarget::File(file),
-        None => JournalTarget::Default,
-    };
-    front::debug(args.scene, &args.set.set, &keep)?;
+    front::debug(args.scene, &args.set.set, &args.keep.target())?;
     Ok(Exit::Good)
 }
 

@@ -2,7 +2,6 @@
 
 use crate::contact::balance::{self, Forces};
 use crate::contact::judge::{Judge, JudgedState};
-use crate::contact::state::{in_mode, largest_drift};
 use crate::contact::stick_point::pierced;
 use crate::contact::tracking::Ground;
 use crate::executor::{Executor, SequentialExecutor};
@@ -14,9 +13,10 @@ use crate::linear::point_forces::PointForces;
 use crate::linear::residual::loads;
 use crate::linear::singular;
 use crate::linear::sizes::Sizes;
+use crate::linear::source::value;
 use crate::linear::system::System;
 use crate::linear::tangent::Tangent;
-use crate::model::{Axis, Contact, Factor, MonitorQuantity, Surface};
+use crate::model::{Contact, Factor, MonitorQuantity, Surface};
 use crate::plane::{larger, plus};
 use crate::{
     ContactState, Deformation, Estimate, Friction, InterfaceProblem, JudgedLaw, LinearisationPoint,
@@ -131,41 +131,6 @@ impl Bodies {
             forces: (TIMES * tolerance.max(after.limit)).max(TOLERANCE),
         }
     }
-}
-
-/// Value of a monitor that needs only displacements and contacts; not a number for the others.
-pub(super) fn value(
-    watched: &MonitorQuantity,
-    contacts: &[Contact],
-    at: &LinearisationPoint<'_>,
-) -> f64 {
-    match watched {
-        MonitorQuantity::Displacement { dof } => at.u[*dof],
-        MonitorQuantity::Contact { slaves, axis } => {
-            let k = if *axis == Axis::X { 0 } else { 1 };
-            slaves.iter().map(|&s| at.contacts[s].force()[k]).sum()
-        }
-        MonitorQuantity::Modes { slaves, mode } => in_mode(at.contacts, slaves, *mode),
-        MonitorQuantity::Drift { slaves } => largest_drift(at.contacts, slaves),
-        MonitorQuantity::Pressure { slaves, shear } => {
-            pressure(contacts, at.contacts, slaves, *shear)
-        }
-        MonitorQuantity::Arc => at.arc,
-        MonitorQuantity::Reported { .. } | MonitorQuantity::Reaction { .. } => f64::NAN,
-    }
-}
-
-/// Pressure or shear of the contact where its magnitude is largest.
-fn pressure(contacts: &[Contact], states: &[ContactState], slaves: &[usize], shear: bool) -> f64 {
-    let of = |&s: &usize| {
-        let both = contacts[s].pressure(states[s].f_n, states[s].f_t)?;
-        Some(both[usize::from(shear)])
-    };
-    let all = slaves.iter().filter_map(of);
-    all.fold(
-        0.0,
-        |most: f64, p| if p.abs() > most.abs() { p } else { most },
-    )
 }
 
 /// Whether the force of each contact can be computed from the stresses. It cannot if a support or a second contact contributes to

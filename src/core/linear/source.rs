@@ -5,11 +5,11 @@
 //! the source receives the forces, moves its bodies, projects the slave nodes on their surfaces, and linearises again. Anything
 //! that implements this trait can be stepped.
 
+use crate::contact::state::{in_mode, largest_drift};
 use crate::interface::minor_history::Input;
 use crate::interface::rows;
 use crate::linalg::SolveError;
-use crate::linear::bodies::value;
-use crate::model::{Axis, MonitorQuantity};
+use crate::model::{Axis, Contact, MonitorQuantity};
 use crate::plane::max_abs;
 use crate::{
     CondensedSystem, ContactState, Deformation, Finding, Friction, InterfaceProblem, JudgedLaw,
@@ -530,6 +530,41 @@ pub trait Source: Send {
             _ => value(watched, &[], at),
         }
     }
+}
+
+/// Value of a monitor that needs only displacements and contacts; not a number for the others.
+pub(super) fn value(
+    watched: &MonitorQuantity,
+    contacts: &[Contact],
+    at: &LinearisationPoint<'_>,
+) -> f64 {
+    match watched {
+        MonitorQuantity::Displacement { dof } => at.u[*dof],
+        MonitorQuantity::Contact { slaves, axis } => {
+            let k = if *axis == Axis::X { 0 } else { 1 };
+            slaves.iter().map(|&s| at.contacts[s].force()[k]).sum()
+        }
+        MonitorQuantity::Modes { slaves, mode } => in_mode(at.contacts, slaves, *mode),
+        MonitorQuantity::Drift { slaves } => largest_drift(at.contacts, slaves),
+        MonitorQuantity::Pressure { slaves, shear } => {
+            pressure(contacts, at.contacts, slaves, *shear)
+        }
+        MonitorQuantity::Arc => at.arc,
+        MonitorQuantity::Reported { .. } | MonitorQuantity::Reaction { .. } => f64::NAN,
+    }
+}
+
+/// Pressure or shear of the contact where its magnitude is largest.
+fn pressure(contacts: &[Contact], states: &[ContactState], slaves: &[usize], shear: bool) -> f64 {
+    let of = |&s: &usize| {
+        let both = contacts[s].pressure(states[s].f_n, states[s].f_t)?;
+        Some(both[usize::from(shear)])
+    };
+    let all = slaves.iter().filter_map(of);
+    all.fold(
+        0.0,
+        |most: f64, p| if p.abs() > most.abs() { p } else { most },
+    )
 }
 
 /// By how much a contact is against each law, relative to the scales; `slip` is what it has slipped in the increment, if it

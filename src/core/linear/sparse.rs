@@ -15,7 +15,7 @@ use crate::contact::tracking::Ground;
 use crate::interface::blocks::Blocks;
 use crate::interface::rows;
 use crate::linalg::{DenseFactors, Factors, Pattern, SolveError, largest};
-use crate::linear::bodies::value;
+use crate::linear::source::value;
 use crate::linear::sparse_contacts::sparse_contacts;
 use crate::linear::violation::violation;
 use crate::model::{Bond, Linear, MonitorQuantity};
