@@ -8,7 +8,6 @@ use std::path::PathBuf;
 use stickslip_debugger::{JournalTarget, Recording, Session};
 
 #[derive(Debug, clap::Args)]
-#[command(mut_arg("journal", |journal| journal.requires("scene")))]
 pub struct Args {
     /// A scene file, or the name of a built-in scene; without one, the debugger lists the built-in ones. The .cel file of a
     /// finished CalculiX run, or an exchange written by `attach --exchange`, opens that run read-only
@@ -42,7 +41,7 @@ impl JournalArgs {
 }
 
 impl Args {
-    /// An option that cannot be combined with a read-only run.
+    /// An option that only a scene that is to be solved can take.
     fn changed(&self) -> Option<&'static str> {
         match (self.set.set.is_empty(), &self.keep.journal) {
             (false, _) => Some("--set"),
@@ -53,8 +52,10 @@ impl Args {
 }
 
 pub fn main(args: Args) -> Result<Exit, Error> {
-    if args.scene.is_none() && !args.set.set.is_empty() {
-        return Err(usage!("--set needs a scene"));
+    if args.scene.is_none()
+        && let Some(asked) = args.changed()
+    {
+        return Err(usage!("{asked} needs a scene"));
     }
     if let Some(text) = args.scene.as_deref().and_then(groups::unknown) {
         return Err(Error::Usage(text));

@@ -86,7 +86,11 @@ impl App {
         let size = body.inner(Margin::new(1, 1));
         let lines: Vec<String> = match &self.overlay {
             Overlay::Text(page) => {
-                let lines = page.text().lines(self, size.width.into(), view);
+                let context = self.context(view, &[]);
+                let (width, keymap) = (size.width.into(), &self.keymap);
+                let lines = page
+                    .text()
+                    .lines(width, &self.theme, keymap, &context, view);
                 lines.iter().map(ToString::to_string).collect()
             }
             _ => Vec::new(),

@@ -47,7 +47,10 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: Option<&View>) {
     let places = places(app, view, area);
     let body = body(&places, view);
     match (&app.overlay, view) {
-        (Overlay::Text(page), _) => textpage::draw(buffer, body, page, app, view),
+        (Overlay::Text(page), _) => {
+            let context = app.context(view, &[]);
+            textpage::draw(buffer, body, page, &app.theme, &app.keymap, &context, view);
+        }
         (Overlay::Chart(page), _) => workprecision::draw(buffer, body, page, &app.theme),
         (Overlay::Chooser(chooser), _) => {
             let picture = chooser::draw(buffer, body, chooser, app);

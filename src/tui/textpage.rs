@@ -1,16 +1,17 @@
 //! Pages of text over the panes, with scrolling and search: the actions, the key bindings, the manual, and the log, the parameters
 //! and the text of an attached solver or a finished run.
 
-use crate::app::App;
 use crate::paint;
 use crate::panes::{help, manual, solver};
 use crate::scroll::scrolled;
+use crate::theme::Theme;
 use crate::view::View;
 use PageText::{Actions, Keys, Log, Manual, Parameters, Run};
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 use ratatui::widgets::{Block, Borders, Widget};
+use stickslip_debugger::action::{Context, Keymap};
 use stickslip_manual::search::Search;
 use stickslip_manual::{PAGES, Page};
 
@@ -61,13 +62,25 @@ impl PageText {
     }
 
     /// Its lines on a page of this width.
-    pub fn lines(self, app: &App, width: usize, view: Option<&View>) -> paint::Lines {
-        let theme = &app.theme;
-        match self {
-            Actions => help::page(width, theme, &app.keymap, &app.context(view, &[])),
-            Keys => help::keys(theme, &app.keymap),
-            Manual(page) => manual::lines(page, theme),
-            Log | Run | Parameters => solver::lines(self, width, view, theme),
+    pub fn lines(
+        self,
+        width: usize,
+        theme: &Theme,
+        keymap: &Keymap,
+        context: &Context,
+        view: Option<&View>,
+    ) -> paint::Lines {
+        let attached = view.and_then(|view| view.attached);
+        match (self, attached) {
+            (Actions, _) => help::page(width, theme, keymap, context),
+            (Keys, _) => help::keys(theme, keymap),
+            (Manual(page), _) => manual::lines(page, theme),
+            (Log, Some(attached)) => solver::log(attached.log, theme),
+            (Run, Some(attached)) => solver::run(attached.log, width, theme),
+            (Parameters, Some(attached)) => {
+                solver::parameters(&attached.offers.parameters, width, context, theme)
+            }
+            (Log | Run | Parameters, None) => Vec::new(),
         }
     }
 }
@@ -191,11 +204,18 @@ impl TextPage {
 }
 
 /// Draws the page.
-pub fn draw(buffer: &mut Buffer, area: Rect, page: &TextPage, app: &App, view: Option<&View>) {
-    let theme = &app.theme;
+pub fn draw(
+    buffer: &mut Buffer,
+    area: Rect,
+    page: &TextPage,
+    theme: &Theme,
+    keymap: &Keymap,
+    context: &Context,
+    view: Option<&View>,
+) {
     let width = usize::from(area.width.saturating_sub(2));
     let height = usize::from(area.height.saturating_sub(2));
-    let lines = page.text.lines(app, width, view);
+    let lines = page.text.lines(width, theme, keymap, context, view);
     let top = page.first(lines.len(), height);
     let title = page.title(top, lines.len(), height, view);
     let inner = if let Manual(_) = page.text {

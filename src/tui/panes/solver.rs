@@ -2,35 +2,22 @@
 //! current values, and the text of a finished run.
 
 use crate::paint;
-use crate::textpage::PageText;
 use crate::theme::Theme;
-use crate::view::{View, context};
 use ratatui::text::Line;
 use stickslip_core::step::intervene::Value;
 use stickslip_core::{Parameter, counted};
-use stickslip_debugger::action::present;
-use stickslip_debugger::recorded::log::{LogLine, LogOrigin};
+use stickslip_debugger::action::{Context, present};
+use stickslip_debugger::recorded::log::{Log, LogOrigin};
 use stickslip_exchange::attach::message::Level;
 use stickslip_scene::{joined, number, shown};
 
 /// Width of the column with the kind of a log line.
 const HOW: usize = 8;
 
-/// The lines of the log, of a run, or of the parameters.
-pub fn lines(text: PageText, width: usize, view: Option<&View>, theme: &Theme) -> paint::Lines {
-    let Some((view, attached)) = view.and_then(|view| Some((view, view.attached?))) else {
-        return Vec::new();
-    };
-    match text {
-        PageText::Log => log_rows(attached.log.lines(), theme),
-        PageText::Run => printed(attached.log.lines().1, width, theme),
-        _ => parameters(&attached.offers.parameters, width, view, theme),
-    }
-}
-
 /// The text of a finished run; sentences wrap, tables do not.
-fn printed(lines: Vec<LogLine>, width: usize, theme: &Theme) -> paint::Lines {
-    lines
+pub fn run(log: &Log, width: usize, theme: &Theme) -> paint::Lines {
+    log.lines()
+        .1
         .into_iter()
         .filter(|said| said.how == LogOrigin::Printed)
         .flat_map(|said| {
@@ -45,7 +32,8 @@ fn printed(lines: Vec<LogLine>, width: usize, theme: &Theme) -> paint::Lines {
 }
 
 /// The log, one line per row, the newest last.
-fn log_rows((first, lines): (usize, Vec<LogLine>), theme: &Theme) -> paint::Lines {
+pub fn log(log: &Log, theme: &Theme) -> paint::Lines {
+    let (first, lines) = log.lines();
     let mut rows = Vec::with_capacity(lines.len() + 1);
     match (first, lines.is_empty()) {
         (0, true) => rows.push(Line::styled("No messages yet.", theme.faint)),
@@ -68,8 +56,12 @@ fn log_rows((first, lines): (usize, Vec<LogLine>), theme: &Theme) -> paint::Line
 }
 
 /// The parameters: current value, range and description.
-fn parameters(all: &[Parameter], width: usize, view: &View, theme: &Theme) -> paint::Lines {
-    let context = context(Some(view), 0, &[]);
+pub fn parameters(
+    all: &[Parameter],
+    width: usize,
+    context: &Context,
+    theme: &Theme,
+) -> paint::Lines {
     let mut rows = Vec::new();
     for known in all {
         let name = shown::line(&known.name);
@@ -77,7 +69,7 @@ fn parameters(all: &[Parameter], width: usize, view: &View, theme: &Theme) -> pa
             Value::Number(value) => number::shortest(*value),
             other => other.to_string(),
         };
-        let now = present(known, &context);
+        let now = present(known, context);
         let began = if now == began {
             String::new()
         } else {
