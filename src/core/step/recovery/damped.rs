@@ -20,7 +20,7 @@
 
 use super::fallback::Fallback;
 use super::motion::Motion;
-use super::retry::{Effect, Retry};
+use super::retry::{Effect, Recovery, Retry};
 use super::stalled::FailedIncrement;
 use crate::linear::source::AcceptedState;
 use crate::step::event::SmallerStepReason;
@@ -55,19 +55,35 @@ const JUMP: f64 = 1e-3;
 const MOST_STEPS: u32 = 5000;
 
 /// Starts a damped motion from the last equilibrium after the smallest increment has failed.
-pub(super) fn release(why: &Failure, stalled: &FailedIncrement<'_>) -> Option<Retry> {
-    let helps = stalled.size_helps(why) || matches!(why, Failure::Singular(_));
-    let (why, load) = (why.clone(), stalled.state.start.load_factor);
-    (helps && stalled.can_move()).then_some(Retry {
-        part: stalled.state.sub_increment,
-        effect: Effect::Release,
-        outcome: Outcome::Motion(MotionEvent::DynamicStart { why, load }),
-    })
+pub(super) struct Release;
+
+impl Recovery for Release {
+    fn name(&self) -> &'static str {
+        "release"
+    }
+
+    fn propose(&self, why: &Failure, stalled: &FailedIncrement<'_>) -> Option<Retry> {
+        let helps = stalled.size_helps(why) || matches!(why, Failure::Singular(_));
+        let (why, load) = (why.clone(), stalled.state.start.load_factor);
+        (helps && stalled.can_move()).then_some(Retry {
+            part: stalled.state.sub_increment,
+            effect: Effect::Release,
+            outcome: Outcome::Motion(MotionEvent::DynamicStart { why, load }),
+        })
+    }
 }
 
 /// Repeats a step of the damped motion more slowly.
-pub(super) fn slow_down(why: &Failure, stalled: &FailedIncrement<'_>) -> Option<Retry> {
-    slower(SmallerStepReason::Failed(why.clone()), stalled)
+pub(super) struct SlowerMotion;
+
+impl Recovery for SlowerMotion {
+    fn name(&self) -> &'static str {
+        "slower"
+    }
+
+    fn propose(&self, why: &Failure, stalled: &FailedIncrement<'_>) -> Option<Retry> {
+        slower(SmallerStepReason::Failed(why.clone()), stalled)
+    }
 }
 
 /// Repeats the step with more drag, or continues the motion after a premature attempt at rest.

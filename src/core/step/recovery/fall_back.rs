@@ -2,47 +2,36 @@
 
 use super::FALLBACKS;
 use super::fallback::{DEEPER, Fallback, FallbackState};
-use super::retry::{Effect, Retry};
+use super::retry::{Effect, Recovery, Retry};
 use super::stalled::FailedIncrement;
 use crate::model::Jumps;
 use crate::strategy;
 use crate::{Failure, Outcome, Settings, State, SubIncrement};
 use std::cmp::Ordering;
 
-crate::words! {
-    Fallback, name:
-    Touching "touching",
-    Section "section",
-    Consistent "consistent",
-    Start "start",
-    Held "held",
-    Geometry "geometry",
-    Deeper "deeper",
-    Release "motion",
-    Back "back",
-}
-
-impl Fallback {
-    /// It as a recovery.
-    pub(super) fn recovery(
-        self,
-    ) -> (
-        &'static str,
-        impl Fn(&Failure, &FailedIncrement<'_>) -> Option<Retry>,
-    ) {
-        let propose =
-            move |why: &Failure, stalled: &FailedIncrement<'_>| self.propose(why, stalled);
-        (self.name(), propose)
+impl Recovery for Fallback {
+    fn name(&self) -> &'static str {
+        match self {
+            Fallback::Touching => "touching",
+            Fallback::Section => "section",
+            Fallback::Consistent => "consistent",
+            Fallback::Start => "start",
+            Fallback::Held => "held",
+            Fallback::Geometry => "geometry",
+            Fallback::Deeper => "deeper",
+            Fallback::Release => "motion",
+            Fallback::Back => "back",
+        }
     }
 
-    fn propose(self, why: &Failure, stalled: &FailedIncrement<'_>) -> Option<Retry> {
+    fn propose(&self, why: &Failure, stalled: &FailedIncrement<'_>) -> Option<Retry> {
         let state = stalled.state;
         let chosen = &state.controls.settings;
         let tried = state.recovery.fallback.map(|route| route.by);
         let out_of_turn = match (state.record.searched.adopted, tried) {
             // The one that helped last came first; the others follow in their order.
-            (Some(adopted), Some(by)) if adopted == by => adopted == self,
-            (_, tried) => tried.is_some_and(|by| by >= self),
+            (Some(adopted), Some(by)) if adopted == by => adopted == *self,
+            (_, tried) => tried.is_some_and(|by| by >= *self),
         };
         if out_of_turn
             || strategy::rungs(chosen.strategy).is_empty()
@@ -56,7 +45,7 @@ impl Fallback {
         {
             return None;
         }
-        let (by, from) = (self, last_half(state));
+        let (by, from) = (*self, last_half(state));
         let rest = from.rest(state.start.load_factor);
         let part = match by {
             Fallback::Section => rest.section(),
@@ -99,7 +88,9 @@ impl PartialOrd for Fallback {
 impl Fallback {
     /// Place in the order in which fallbacks are tried.
     fn turn(self) -> Option<usize> {
-        FALLBACKS.iter().position(|listed| *listed == self)
+        FALLBACKS
+            .iter()
+            .position(|listed| listed.name() == self.name())
     }
 
     /// Whether the fallback may help after this failure. If all bodies are given as matrices, the interface problem itself fails,

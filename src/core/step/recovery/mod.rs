@@ -49,37 +49,30 @@ const MOST_CUTS: u32 = 300;
 /// Name of the major iteration that the ladder repeats without the change of the contact geometry.
 pub(super) const FROZEN: &str = "frozen";
 
-const MOVING: [Recovery; 1] = [("slower", damped::slow_down)];
-const ALONG: [Recovery; 3] = [
-    ("turn", path_corner::turn_at_start),
-    ("shorter-arc", cut::shorter_arc),
-    ("turn-at-last", path_corner::turn_at_last),
+const MOVING: [&dyn Recovery; 1] = [&damped::SlowerMotion];
+const ALONG: [&dyn Recovery; 3] = [
+    &path_corner::CornerRestart,
+    &cut::ShorterArc,
+    &path_corner::LastCornerRestart,
 ];
-const LOADED: [Recovery; 3] = [
-    ("halve", cut::halve),
-    ("whole", whole::whole),
-    ("release", damped::release),
-];
-const FALLBACKS: [Fallback; 9] = [
-    Fallback::Touching,
-    Fallback::Section,
-    Fallback::Consistent,
-    Fallback::Start,
-    Fallback::Held,
-    Fallback::Geometry,
-    Fallback::Deeper,
-    Fallback::Release,
-    Fallback::Back,
+const LOADED: [&dyn Recovery; 3] = [&cut::IncrementCut, &whole::WholeIncrement, &damped::Release];
+const FALLBACKS: [&dyn Recovery; 9] = [
+    &Fallback::Touching,
+    &Fallback::Section,
+    &Fallback::Consistent,
+    &Fallback::Start,
+    &Fallback::Held,
+    &Fallback::Geometry,
+    &Fallback::Deeper,
+    &Fallback::Release,
+    &Fallback::Back,
 ];
 
 /// Names of all recoveries, in the order in which they are tried.
 pub fn names() -> impl Iterator<Item = &'static str> {
-    let steps = MOVING.into_iter().chain(ALONG).chain(LOADED);
-    let steps = steps.map(|(name, _)| name);
-    [FROZEN]
-        .into_iter()
-        .chain(steps)
-        .chain(FALLBACKS.map(Fallback::name))
+    let lists: [&[&dyn Recovery]; 4] = [&MOVING, &ALONG, &LOADED, &FALLBACKS];
+    let listed = lists.into_iter().flatten().map(|recovery| recovery.name());
+    [FROZEN].into_iter().chain(listed)
 }
 
 impl Stepper {
@@ -96,7 +89,7 @@ impl Stepper {
         if let Some(stop) = self.now.state.cut_too_often(&why) {
             // Smaller parts or a motion that helped came after the geometry, which had not.
             let helped = self.now.state.record.searched.adopted.is_some();
-            let again = (!helped).then(|| self.recover([Fallback::Geometry.recovery()], &why));
+            let again = (!helped).then(|| self.recover(&[&Fallback::Geometry], &why));
             return again.flatten().unwrap_or(Outcome::Failed(stop));
         }
         let again = self.cut(&why).or_else(|| self.fall_back(&why));
@@ -106,12 +99,12 @@ impl Stepper {
     /// Restarts the increment with another size. `None` if no recovery applies.
     pub(super) fn cut(&mut self, why: &Failure) -> Option<Outcome> {
         let state = &self.now.state;
-        let recoveries: &[Recovery] = match (&state.recovery.motion, &state.way) {
+        let recoveries: &[&dyn Recovery] = match (&state.recovery.motion, &state.way) {
             (Some(_), _) => &MOVING,
             (None, Some(_)) => &ALONG,
             (None, None) => &LOADED,
         };
-        self.recover(recoveries.iter().copied(), why)
+        self.recover(recoveries, why)
     }
 
     /// Restarts the increment with the next fallback: first the one of the search that helped last. `None` if none applies.
@@ -119,23 +112,16 @@ impl Stepper {
         let adopted = self.now.state.record.searched.adopted;
         let again = adopted
             .filter(|_| self.now.state.recovery.fallback.is_none())
-            .and_then(|by| self.recover([by.recovery()], why));
-        again.or_else(|| self.recover(FALLBACKS.map(Fallback::recovery), why))
+            .and_then(|by| self.recover(&[&by], why));
+        again.or_else(|| self.recover(&FALLBACKS, why))
     }
 
-    fn recover<P>(
-        &mut self,
-        recoveries: impl IntoIterator<Item = (&'static str, P)>,
-        why: &Failure,
-    ) -> Option<Outcome>
-    where
-        P: Fn(&Failure, &FailedIncrement<'_>) -> Option<Retry>,
-    {
+    fn recover(&mut self, recoveries: &[&dyn Recovery], why: &Failure) -> Option<Outcome> {
         let left_out = self.left_out;
-        let kept = |(name, _): &(&'static str, P)| Some(OmittedStep::Recovery(name)) != left_out;
-        let mut kept = recoveries.into_iter().filter(kept);
-        kept.find_map(|(_, propose)| {
-            let retry = propose(why, &self.now.stalled())?;
+        let kept =
+            |recovery: &&&dyn Recovery| Some(OmittedStep::Recovery(recovery.name())) != left_out;
+        recoveries.iter().filter(kept).find_map(|recovery| {
+            let retry = recovery.propose(why, &self.now.stalled())?;
             self.now.try_again(retry)
         })
     }

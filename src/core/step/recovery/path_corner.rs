@@ -23,7 +23,7 @@
 //! Pivoting methods do the same at the end of an edge of a piecewise linear path (Eaves 1972). If the contacts that change
 //! together do not agree on a sign, the path does not continue in these modes.
 
-use super::retry::{Effect, Retry};
+use super::retry::{Effect, Recovery, Retry};
 use super::stalled::FailedIncrement;
 use crate::contact::tracking::leave_border;
 use crate::plane::minus;
@@ -322,13 +322,29 @@ impl State {
 }
 
 /// Restart behind the corner of the path at which the increment starts.
-pub(super) fn turn_at_start(why: &Failure, stalled: &FailedIncrement<'_>) -> Option<Retry> {
-    turn(why, stalled, AT_START, false)
+pub(super) struct CornerRestart;
+
+impl Recovery for CornerRestart {
+    fn name(&self) -> &'static str {
+        "turn"
+    }
+
+    fn propose(&self, why: &Failure, stalled: &FailedIncrement<'_>) -> Option<Retry> {
+        turn(why, stalled, AT_START, false)
+    }
 }
 
 /// At the minimum arc: restart behind the corner just ahead, or the one where contacts changed first.
-pub(super) fn turn_at_last(why: &Failure, stalled: &FailedIncrement<'_>) -> Option<Retry> {
-    turn(why, stalled, AHEAD, true)
+pub(super) struct LastCornerRestart;
+
+impl Recovery for LastCornerRestart {
+    fn name(&self) -> &'static str {
+        "turn-at-last"
+    }
+
+    fn propose(&self, why: &Failure, stalled: &FailedIncrement<'_>) -> Option<Retry> {
+        turn(why, stalled, AHEAD, true)
+    }
 }
 
 /// Restarts the increment behind a corner that lies at most this fraction of its size ahead. `None` if there is no such corner,

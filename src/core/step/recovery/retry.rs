@@ -1,4 +1,4 @@
-//! Recoveries, and their proposals.
+//! The trait of recoveries, and their proposals.
 
 use super::fallback::FallbackState;
 use super::motion::Motion;
@@ -6,12 +6,14 @@ use super::stalled::FailedIncrement;
 use crate::step::arc_state::ArcState;
 use crate::{Failure, Outcome, SubIncrement};
 
-/// One way to restart an increment: its name, for [`crate::step::stepper::Stepper::leave_out`], and what it proposes after a failure;
-/// `None` if it does not apply or has been tried.
-pub(super) type Recovery = (
-    &'static str,
-    fn(&Failure, &FailedIncrement<'_>) -> Option<Retry>,
-);
+/// One way to restart an increment.
+pub(super) trait Recovery: Sync {
+    /// Its name, for [`crate::step::stepper::Stepper::leave_out`].
+    fn name(&self) -> &'static str;
+
+    /// What to try after the failure `why`. `None` if this recovery does not apply or has been tried.
+    fn propose(&self, why: &Failure, stalled: &FailedIncrement<'_>) -> Option<Retry>;
+}
 
 /// How to restart an increment.
 pub(in crate::step) struct Retry {
