@@ -136,11 +136,7 @@ impl<'a> Server<'a> {
         }
         let mut monitors = Vec::new();
         let event = self.stepper.event();
-        let accepted = matches!(
-            event.outcome,
-            stickslip_core::step::event::Outcome::Increment { .. }
-        );
-        if accepted {
+        if event.outcome.is_accepted() {
             self.stepper.monitors(&mut monitors);
         }
         let (state, event) = (self.stepper.state(), self.stepper.event());

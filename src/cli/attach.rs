@@ -1,13 +1,12 @@
 //! `stickslip attach`: steps an external solver in the debugger, checks its protocol, or prints a client for writing one.
 
 use super::base::{Error, Exit, answer, notify, say, usage};
-use super::debugger::{DEBUGGER, needs_terminal};
+use super::debugger::{DEBUGGER, JournalArgs, needs_terminal};
 use super::front;
 use super::solver::SolverArgs;
-use std::path::PathBuf;
 use stickslip_attach::{C, FORTRAN, PYTHON, SCHEMA, check};
 use stickslip_core::counted;
-use stickslip_debugger::{JournalTarget, Session};
+use stickslip_debugger::Session;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -28,12 +27,8 @@ pub struct Args {
     /// Prints the JSON schema of the messages that a solver sends
     #[arg(long, conflicts_with_all = ["command", "python", "c", "fortran"])]
     schema: bool,
-    /// Writes the session's journal to a new file [default: in the user's state directory]
-    #[arg(long, value_name = "FILE", conflicts_with = "no_journal")]
-    journal: Option<PathBuf>,
-    /// Writes no journal; the session cannot be resumed
-    #[arg(long)]
-    no_journal: bool,
+    #[command(flatten)]
+    keep: JournalArgs,
     /// Overwrites an existing --exchange file
     #[arg(long)]
     force: bool,
@@ -62,11 +57,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         DEBUGGER,
         "run --trace - -- COMMAND` steps a solver without one",
     )?;
-    let keep = match args.journal {
-        _ if args.no_journal => JournalTarget::Nowhere,
-        Some(ref file) => JournalTarget::File(file.clone()),
-        None => JournalTarget::Default,
-    };
+    let keep = args.keep.target();
     let (scene, attached, log) = args.solver.attach(args.force, None)?;
     let text = format!(
         "attached to {} {}",

@@ -14,23 +14,36 @@ pub struct Args {
     scene: Option<String>,
     #[command(flatten)]
     set: SetArgs,
+    #[command(flatten)]
+    keep: JournalArgs,
+}
+
+/// The journal of a session.
+#[derive(Debug, clap::Args)]
+pub struct JournalArgs {
     /// Writes the session's journal to a new file [default: in the user's state directory]
-    #[arg(
-        long,
-        value_name = "FILE",
-        conflicts_with = "no_journal",
-        requires = "scene"
-    )]
+    #[arg(long, value_name = "FILE", conflicts_with = "no_journal")]
     journal: Option<PathBuf>,
     /// Writes no journal; the session cannot be resumed
     #[arg(long)]
     no_journal: bool,
 }
 
+impl JournalArgs {
+    /// Where it is written.
+    pub fn target(&self) -> JournalTarget {
+        match &self.journal {
+            _ if self.no_journal => JournalTarget::Nowhere,
+            Some(file) => JournalTarget::File(file.clone()),
+            None => JournalTarget::Default,
+        }
+    }
+}
+
 impl Args {
-    /// An option that cannot be combined with a read-only run.
+    /// An option that only a scene that is to be solved can take.
     fn changed(&self) -> Option<&'static str> {
-        match (self.set.set.is_empty(), &self.journal) {
+        match (self.set.set.is_empty(), &self.keep.journal) {
             (false, _) => Some("--set"),
             (true, Some(_)) => Some("--journal"),
             (true, None) => None,
@@ -39,8 +52,10 @@ impl Args {
 }
 
 pub fn main(args: Args) -> Result<Exit, Error> {
-    if args.scene.is_none() && !args.set.set.is_empty() {
-        return Err(usage!("--set needs a scene"));
+    if args.scene.is_none()
+        && let Some(asked) = args.changed()
+    {
+        return Err(usage!("{asked} needs a scene"));
     }
     if let Some(text) = args.scene.as_deref().and_then(groups::unknown) {
         return Err(Error::Usage(text));
@@ -56,12 +71,7 @@ pub fn main(args: Args) -> Result<Exit, Error> {
         DEBUGGER,
         &format!("run {scene} --csv -` solves without one"),
     )?;
-    let keep = match args.journal {
-        _ if args.no_journal => JournalTarget::Nowhere,
-        Some(file) => JournalTarget::File(file),
-        None => JournalTarget::Default,
-    };
-    front::debug(args.scene, &args.set.set, &keep)?;
+    front::debug(args.scene, &args.set.set, &args.keep.target())?;
     Ok(Exit::Good)
 }
 

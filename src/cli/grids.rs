@@ -22,7 +22,7 @@ impl GridInterval {
     fn wants(self, event: &Event) -> bool {
         match self {
             GridInterval::Minor => true,
-            GridInterval::Increment => matches!(event.outcome, Outcome::Increment { .. }),
+            GridInterval::Increment => event.outcome.is_accepted(),
             GridInterval::Major => matches!(
                 event.outcome,
                 Outcome::Increment { .. } | Outcome::Major { .. } | Outcome::Refused { .. }

@@ -52,7 +52,7 @@ impl RunPosition {
         let at = event.position;
         let here = at.increment == self.increment && self.major.is_none_or(|m| m == at.major);
         here && match (self.major, self.minor) {
-            (None, _) => matches!(event.outcome, Outcome::Increment { .. }),
+            (None, _) => event.outcome.is_accepted(),
             (_, None) => ends_major(&event.outcome),
             (_, Some(minor)) => minor == at.minor,
         }
@@ -62,7 +62,7 @@ impl RunPosition {
     fn is_past(&self, event: &Event) -> bool {
         let at = event.position;
         at.increment == self.increment
-            && (matches!(event.outcome, Outcome::Increment { .. })
+            && (event.outcome.is_accepted()
                 || (Some(at.major) == self.major && ends_major(&event.outcome)))
     }
 }

@@ -96,27 +96,21 @@ struct Run<'a> {
     tally: Tally<'a>,
 }
 
-/// How a run ended, for its exit code and record.
+/// How a run ended: its exit code, and what its record says about that.
 struct RunResult {
     exit: Exit,
-    outcome: &'static str,
-    /// The last message, without the scene's name.
-    message: Option<String>,
-    failure: Option<FailureRecord>,
-    /// Cause of the failure.
-    why: Vec<String>,
-    works: Option<String>,
+    record: RunRecord,
 }
 
 impl RunResult {
     fn new(exit: Exit, outcome: &'static str) -> RunResult {
         RunResult {
             exit,
-            outcome,
-            message: None,
-            failure: None,
-            why: Vec::new(),
-            works: None,
+            record: RunRecord {
+                outcome,
+                exit_code: exit as u8,
+                ..RunRecord::default()
+            },
         }
     }
 }
@@ -234,7 +228,7 @@ impl<'a> Run<'a> {
     /// Prints the message of a result, and adds it.
     fn with_message(&self, mut result: RunResult, message: String) -> RunResult {
         notify(&format!("{}: {message}", self.tally.scene.name));
-        result.message = Some(message);
+        result.record.message = Some(message);
         result
     }
 
@@ -242,7 +236,7 @@ impl<'a> Run<'a> {
     fn report_lost(&self, failure: FailureRecord) -> RunResult {
         let mut result = RunResult::new(Exit::Unconverged, "failed");
         let words = failure.words.clone();
-        result.failure = Some(failure);
+        result.record.failure = Some(failure);
         self.with_message(result, words)
     }
 
@@ -252,7 +246,7 @@ impl<'a> Run<'a> {
         let (model, at, load) = (&self.tally.scene.model, event.position, event.load_factor);
         self.report_marks();
         let mut result = RunResult::new(Exit::Unconverged, "failed");
-        result.failure = Some(FailureRecord::new(model, at, load, failure));
+        result.record.failure = Some(FailureRecord::new(model, at, load, failure));
         let text = report::failure(model, state, at, load, failure);
         let mut result = self.with_message(result, text);
         if !self.is_own {
@@ -264,8 +258,8 @@ impl<'a> Run<'a> {
             notify(&format!(
                 "  {how} opens it in the debugger; d shows the cause"
             ));
-            result.why.extend(self.tally.rounds());
-            for line in &result.why {
+            result.record.why.extend(self.tally.rounds());
+            for line in &result.record.why {
                 notify(&format!("  why: {line}"));
             }
             return result;
@@ -277,13 +271,14 @@ impl<'a> Run<'a> {
         ));
         let stop = || interrupt.has_arrived();
         let most = (&self.tally.scene.spec, self.tally.steps);
-        result.why = page::causes(&mut scratch, state, failure, &stop);
-        for line in &result.why {
+        let record = &mut result.record;
+        record.why = page::causes(&mut scratch, state, failure, &stop);
+        for line in &record.why {
             notify(&format!("  why: {line}"));
         }
         let works = page::first_that_works(&mut scratch, state, failure, most, &stop);
-        result.works = works.map(|line| line.option());
-        if let Some(line) = &result.works {
+        record.works = works.map(|line| line.option());
+        if let Some(line) = &record.works {
             notify(&format!("  try: {line}"));
         }
         result
@@ -296,16 +291,10 @@ impl<'a> Run<'a> {
         RunRecord {
             schema: "stickslip-run-1",
             scene: tally.scene.name.clone(),
-            outcome: result.outcome,
-            exit_code: result.exit as u8,
-            message: result.message,
             increments: tally.accepted,
             majors: tally.majors,
             minors: tally.steps,
             load: self.solver.state().start.load_factor,
-            failure: result.failure,
-            why: result.why,
-            works: result.works,
             fallbacks: tally.fallbacks(),
             jumps: tally.jumps.clone(),
             motions: tally.motions.clone(),
@@ -315,6 +304,7 @@ impl<'a> Run<'a> {
             notes: tally.messages.notes.clone(),
             monitors: tally.monitors(),
             slaves: tally.slaves(),
+            ..result.record
         }
     }
 

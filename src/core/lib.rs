@@ -61,6 +61,7 @@
 //!
 //! - [`words`](macro@words): names of the variants of an enum, each written once.
 //! - [`plane`]: vectors in the plane.
+//! - [`groups`]: groups of connected nodes.
 //! - [`executor`]: parallel work on bodies, on threads that the caller provides.
 //! - [`linalg`]: sparsity patterns, factors, checked solves; a separate package.
 //! - [`documented`]: types whose doc comments the program shows.
@@ -97,6 +98,7 @@ pub mod contact;
 pub mod documented;
 pub mod elements;
 pub mod fem;
+pub mod groups;
 pub mod interface;
 pub mod linear;
 pub mod model;

@@ -23,7 +23,7 @@ const NONE: f64 = 1e-9;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct AreaSide<'a> {
     pub nodes: &'a [usize],
-    made_of: Option<&'a Elastic>,
+    pub made_of: Option<&'a Elastic>,
 }
 
 /// Areas of the slave nodes, where `pair_of` is the pair of each; `None` for other nodes and for nodes on no side. In a pair with

@@ -12,6 +12,7 @@ use crate::format::error::{Fault, at, fault};
 use crate::format::spec::History;
 use crate::shown;
 use std::collections::{HashMap, HashSet};
+use stickslip_core::groups::distinct;
 use stickslip_core::model::{Form, Linear, ReportedKind};
 use stickslip_core::{
     Body, BodyKind, Bond, Contact, Control, Friction, Jumps, Model, Monitor, MonitorQuantity, Node,
@@ -93,10 +94,8 @@ pub(super) fn compile(spec: &Spec, text: &str) -> Result<(Model, Names), Fault> 
     if !(from.is_finite() && to.is_finite() && from != to) {
         return refused("load: must be two different load factors, for example [0, 1]");
     }
-    let mut of_body: Vec<usize> = bars.iter().flatten().copied().collect();
-    of_body.extend(contacts.iter().map(|contact| contact.node));
-    of_body.sort_unstable();
-    of_body.dedup();
+    let touching = contacts.iter().map(|contact| contact.node);
+    let of_body = distinct(bars.iter().flatten().copied().chain(touching));
     let named = |(number, monitor): (usize, &message::Monitor)| {
         let (name, kind) = match monitor {
             message::Monitor::Name(name) => (name, ReportedKind::Other),

@@ -4,10 +4,10 @@ use super::Scene;
 use super::compile::increments;
 use super::{gaps, limits};
 use crate::format::error::some_of;
-use crate::groups::marked;
 use crate::joined;
 use crate::number::sig6;
 use std::fmt;
+use stickslip_core::groups::{distinct, marked};
 use stickslip_core::model::{Beam, Form, Linear, LinearSolver};
 use stickslip_core::words::is_default;
 use stickslip_core::{
@@ -265,12 +265,7 @@ fn axis_lines(model: &Model) -> Vec<String> {
         let on_axis = model.nodes[**node].at[0].abs() <= limits::SHORTEST * model.length;
         on_axis && model.dofs.equation[model.dofs.first[**node]].is_some()
     };
-    let mut nodes: Vec<usize> = round
-        .flat_map(|body| body.nodes.iter().filter(free))
-        .copied()
-        .collect();
-    nodes.sort_unstable();
-    nodes.dedup();
+    let nodes = distinct(round.flat_map(|body| body.nodes.iter().filter(free).copied()));
     if nodes.is_empty() {
         return Vec::new();
     }

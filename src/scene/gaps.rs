@@ -2,14 +2,14 @@
 //! effect of `settings.initial_gaps`.
 
 use crate::few;
-use crate::groups::marked;
 use crate::number::sig4;
 use crate::overlaps;
 use crate::pressed;
 use stickslip_core::contact::facing::{MOST as MOST_SURFACES, faced};
 use stickslip_core::contact::projection::{project, projection_at};
 use stickslip_core::fem::lagrange;
-use stickslip_core::plane::{dot, range};
+use stickslip_core::groups::{distinct, marked};
+use stickslip_core::plane::{dot, plus, range};
 use stickslip_core::{
     Body, Contact, InitialGaps, Model, Node, Surface, SurfaceElement, SurfacePoint,
 };
@@ -219,7 +219,7 @@ fn outward(model: &Model) -> Vec<Option<[f64; 2]>> {
             let xi = -1.0 + 2.0 * k as f64 / count as f64;
             let n = normal(edge, &model.nodes, &lagrange::shape(edge.len(), xi).d);
             let sum = all[node].get_or_insert([0.0; 2]);
-            *sum = [sum[0] + n[0], sum[1] + n[1]];
+            *sum = plus(*sum, n);
         }
     }
     for sum in all.iter_mut().flatten() {
@@ -254,17 +254,9 @@ fn unheld(model: &Model) -> Vec<String> {
     let slaves: Vec<usize> = contacts
         .flat_map(|contact| contact.carriers().map(|(node, _)| node))
         .collect();
-    let mut met: Vec<usize> = model
-        .contacts
-        .iter()
-        .flat_map(|contact| &contact.surfaces)
-        .copied()
-        .collect();
-    met.sort_unstable();
-    met.dedup();
-    let masters = met
-        .iter()
-        .flat_map(|&k| model.surfaces[k].elements.iter().flatten());
+    let contacts = model.contacts.iter();
+    let met = distinct(contacts.flat_map(|contact| contact.surfaces.iter().copied()));
+    let masters = met.iter().flat_map(|&k| model.surfaces[k].nodes());
     let at_contact = marked(model.nodes.len(), slaves.iter().chain(masters));
     let touches = |body: &Body| body.nodes.iter().any(|&node| at_contact[node]);
     model

@@ -24,7 +24,6 @@ pub mod cost;
 pub mod embedded;
 pub mod format;
 pub mod gaps;
-pub mod groups;
 pub mod import;
 pub mod limits;
 pub mod memory;

@@ -33,9 +33,9 @@ use std::fmt::Write;
 use std::num::NonZeroUsize;
 use std::path::Path;
 use std::sync::Arc;
-use stickslip_scene::format::error::{at, did_you_mean};
-use stickslip_scene::format::locate::{line_and_column, locate};
+use stickslip_scene::format::error::{Fault, at, did_you_mean};
 use stickslip_scene::format::read::{text as file_text, value as from_ron};
+use stickslip_scene::scene::placed;
 use stickslip_scene::{EmbeddedFile, Scene, SceneError, increments};
 use stickslip_scene::{embedded, joined};
 
@@ -186,13 +186,8 @@ impl Benchmarks {
 
     /// An error at a field of the k-th benchmark.
     fn fault(&self, k: usize, field: &str, message: String) -> SceneError {
-        let path = at!["benchmarks", k, field];
-        let start = locate(&self.text, &path).start;
-        SceneError {
-            at: Some(line_and_column(&self.text, start)),
-            path: path.to_string(),
-            ..SceneError::whole(&self.name, message)
-        }
+        let fault = Fault::new(at!["benchmarks", k, field], message);
+        placed(&self.name, &self.text, &[], fault)
     }
 
     /// Runs each combination of scene and settings once, and compares the results.

@@ -20,6 +20,8 @@ use std::collections::{BTreeSet, HashMap};
 use std::fmt::Write;
 use std::sync::Arc;
 use stickslip_core::Model;
+use stickslip_core::groups::distinct;
+use stickslip_core::plane::max_abs;
 use stickslip_scene::joined;
 
 /// Default tolerance: runs whose ends differ by more than this fraction of the largest value are on different
@@ -129,7 +131,7 @@ impl MapRun {
                 name: run.monitors[k].clone(),
                 kind: kind(model, &model.monitors[k].of),
                 end: value(run.last()),
-                largest: all.map(|row| value(row).abs()).fold(0.0, f64::max),
+                largest: max_abs(all.map(value)),
             }
         };
         Some(MapRun {
@@ -303,14 +305,8 @@ impl Map {
             n => format!("{n} scenes"),
         };
         made += &changes(study);
-        let mut named: Vec<usize> = self
-            .cells
-            .iter()
-            .flatten()
-            .filter_map(|c| Some(c.reference?.0))
-            .collect();
-        named.sort_unstable();
-        named.dedup();
+        let cells = self.cells.iter().flatten();
+        let named = distinct(cells.filter_map(|c| Some(c.reference?.0)));
         const SHOWN: usize = 4;
         let names = joined(named.iter().take(SHOWN).map(|&k| self.name(k)), "; ");
         let more = match named.len().saturating_sub(SHOWN) {

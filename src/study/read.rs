@@ -18,10 +18,11 @@ use super::builtin;
 use serde::Deserialize;
 use serde::de::{Deserializer, Visitor};
 use std::fmt;
-use stickslip_scene::format::error::{Path, at, did_you_mean};
-use stickslip_scene::format::locate::{line_and_column, locate, too_deep};
+use stickslip_scene::format::error::{Fault, Path, at, did_you_mean};
+use stickslip_scene::format::locate::{locate, too_deep};
 use stickslip_scene::format::read::{text, value};
 use stickslip_scene::readers::or_mistaken;
+use stickslip_scene::scene::placed;
 use stickslip_scene::{FileKind, Scene, SceneError};
 
 /// A study, before its scenes are checked.
@@ -228,15 +229,11 @@ impl Study {
         let mut around = at.clone();
         // A value that the file does not contain has the place of the one around it.
         let is_there = around.0.pop().is_none() || locate(&self.text, &around) != place;
-        let whole = SceneError::whole(&self.name, message);
-        if !is_there || self.text.is_empty() {
-            return whole;
-        }
-        SceneError {
-            at: Some(line_and_column(&self.text, place.start)),
-            path: at.to_string(),
-            ..whole
-        }
+        let (text, at) = match is_there && !self.text.is_empty() {
+            true => (self.text.as_str(), at.clone()),
+            false => ("", Path::default()),
+        };
+        placed(&self.name, text, &[], Fault::new(at, message))
     }
 
     /// The error of a scene about the k-th setting, of `set` and then `vary`, at its place in the file.

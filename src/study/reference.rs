@@ -151,11 +151,7 @@ impl Reference {
 
     /// The row at a load on a leg.
     pub fn at(&self, leg: usize, load: f64) -> Option<&ReferencePoint> {
-        let size = self
-            .rows
-            .iter()
-            .map(|row| row.load.abs())
-            .fold(0.0, f64::max);
+        let size = max_abs(self.rows.iter().map(|row| row.load));
         let here =
             |row: &&ReferencePoint| row.leg == leg && (row.load - load).abs() <= SAME_LOAD * size;
         self.rows.iter().find(here)

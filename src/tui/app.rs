@@ -11,10 +11,8 @@ use crate::keys;
 use crate::layout::{Pane, ShownPanes};
 use crate::learning::Learning;
 use crate::log_counts::LogCounts;
-use crate::panes::help::{Help, Listing};
-use crate::panes::manual;
-use crate::panes::solver;
 use crate::shape_lines::ShapeLines;
+use crate::textpage::{PageText, TextPage};
 use crate::theme::{self, Theme};
 use crate::view::{View, context};
 use ratatui::layout::Rect;
@@ -60,16 +58,12 @@ pub enum Effect {
 pub enum Overlay {
     /// No overlay.
     None,
-    /// The list of actions, or of keys.
-    Help(Help),
-    /// A page of the manual.
-    Manual(manual::Reader),
+    /// A page of text.
+    Text(TextPage),
     /// The list of what can be opened.
     Chooser(Chooser),
     /// A work-precision chart.
     Chart(Box<ChartPage>),
-    /// The log or the parameters of an attached solver.
-    Solver(solver::SolverReader),
     /// A line being typed.
     Line(CommandLine),
     /// Waits for the mode of the selected node.
@@ -84,9 +78,8 @@ impl Overlay {
         Overlay::Line(CommandLine::new(purpose, text))
     }
 
-    /// A page about an attached solver.
-    fn solver(page: solver::Page) -> Overlay {
-        Overlay::Solver(solver::SolverReader::new(page))
+    fn text(text: PageText) -> Overlay {
+        Overlay::Text(TextPage::new(text))
     }
 
     /// Whether a page that finishes loading may be shown: no overlay is open except the chooser.
@@ -322,7 +315,7 @@ impl App {
         match &mut self.overlay {
             Overlay::None => self.pane_key(&name, view),
             Overlay::Chooser(_) => self.chooser_key(&name, view),
-            Overlay::Help(_) | Overlay::Manual(_) | Overlay::Chart(_) | Overlay::Solver(_) => {
+            Overlay::Text(_) | Overlay::Chart(_) => {
                 self.page_key(&name, view);
                 None
             }
@@ -569,15 +562,15 @@ impl App {
             Ui::CommandLine => self.overlay = Overlay::line(Purpose::Command, ""),
             Ui::Log => {
                 let finished = view.is_some_and(View::is_finished);
-                self.overlay = Overlay::solver(if finished {
-                    solver::Page::Run
+                self.overlay = Overlay::text(if finished {
+                    PageText::Run
                 } else {
-                    solver::Page::Log
+                    PageText::Log
                 });
             }
-            Ui::Parameters => self.overlay = Overlay::solver(solver::Page::Parameters),
-            Ui::Help => self.overlay = Overlay::Help(Help::new(Listing::Actions)),
-            Ui::Keys => self.overlay = Overlay::Help(Help::new(Listing::Keys)),
+            Ui::Parameters => self.overlay = Overlay::text(PageText::Parameters),
+            Ui::Help => self.overlay = Overlay::text(PageText::Actions),
+            Ui::Keys => self.overlay = Overlay::text(PageText::Keys),
             Ui::Copy(what) => return self.copy(what, view),
             Ui::Colours(colours) => self.colour(colours),
             Ui::Mouse(on) => {
@@ -589,7 +582,7 @@ impl App {
                 });
                 return Some(Effect::Mouse(self.mouse));
             }
-            Ui::Manual(page) => self.overlay = Overlay::Manual(manual::Reader::new(page)),
+            Ui::Manual(page) => self.overlay = Overlay::text(PageText::Manual(page)),
             Ui::Cancel => {
                 self.panes.zoomed = false;
                 self.say("");

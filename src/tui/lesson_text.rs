@@ -77,11 +77,7 @@ impl App {
         let tutor = self.learning.lesson.as_ref()?;
         let covered = matches!(
             self.overlay,
-            Overlay::Help { .. }
-                | Overlay::Manual(_)
-                | Overlay::Chooser(_)
-                | Overlay::Chart(_)
-                | Overlay::Solver(_)
+            Overlay::Text(_) | Overlay::Chooser(_) | Overlay::Chart(_)
         );
         if self.area.is_empty() || covered {
             return None;

@@ -48,6 +48,7 @@ mod shape_lines;
 mod shape_marks;
 #[cfg(feature = "terminal")]
 pub mod terminal;
+pub mod textpage;
 pub mod theme;
 pub mod view;
 mod waiting;

@@ -75,7 +75,7 @@ impl App {
         let key = if up { "Up" } else { "Down" };
         match &self.overlay {
             Overlay::None => {}
-            Overlay::Help(_) | Overlay::Solver(_) | Overlay::Manual(_) => {
+            Overlay::Text(_) => {
                 for _ in 0..LINES {
                     self.page_key(key, view);
                 }

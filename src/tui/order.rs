@@ -2,6 +2,7 @@
 
 use crate::app::App;
 use crate::view::View;
+use stickslip_core::plane::range;
 use stickslip_core::{Mode, Rule};
 use stickslip_debugger::action::{Filter, Sort};
 use stickslip_debugger::explain::tested::Dimension;
@@ -18,13 +19,9 @@ impl App {
     pub fn watched(&self, view: &View) -> usize {
         let monitors = &view.model.monitors;
         let moves = |at: &usize| {
-            let (low, high) = frame::curve(view.frames, *at)
-                .into_iter()
-                .map(|[value, _]| value)
-                .filter(|x| x.is_finite())
-                .fold((0.0, 0.0), |(low, high): (f64, f64), x| {
-                    (low.min(x), high.max(x))
-                });
+            let values = frame::curve(view.frames, *at).into_iter();
+            let values = values.map(|[value, _]| value).filter(|x| x.is_finite());
+            let [low, high] = range(values.chain([0.0]));
             high - low > view.noise(&monitors[*at])
         };
         let last = monitors.len().saturating_sub(1);

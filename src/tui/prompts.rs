@@ -84,11 +84,19 @@ impl App {
         let body = screen::body(&screen::places(self, view, self.area), view);
         // Without the frame.
         let size = body.inner(Margin::new(1, 1));
-        let open = context(view, self.selected, &[]);
+        let lines: Vec<String> = match &self.overlay {
+            Overlay::Text(page) => {
+                let context = self.context(view, &[]);
+                let (width, keymap) = (size.width.into(), &self.keymap);
+                let lines = page
+                    .text()
+                    .lines(width, &self.theme, keymap, &context, view);
+                lines.iter().map(ToString::to_string).collect()
+            }
+            _ => Vec::new(),
+        };
         let stays = match &mut self.overlay {
-            Overlay::Help(help) => help.key(name, size, &self.keymap, &open),
-            Overlay::Manual(reader) => reader.key(name),
-            Overlay::Solver(reader) => reader.key(name, size, view),
+            Overlay::Text(page) => page.key(name, size.height.into(), &lines),
             Overlay::Chart(page) => page.key(name) || !["Esc", "q", "Enter"].contains(&name),
             _ => true,
         };

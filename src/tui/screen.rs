@@ -9,13 +9,11 @@ use crate::pane_entry::frame;
 use crate::panes::chooser;
 use crate::panes::entry;
 use crate::panes::footer;
-use crate::panes::help;
 use crate::panes::lesson;
-use crate::panes::manual;
 use crate::panes::shape;
-use crate::panes::solver;
 use crate::panes::status;
 use crate::panes::workprecision;
+use crate::textpage;
 use crate::theme::Theme;
 use crate::view::View;
 use ratatui::buffer::Buffer;
@@ -49,12 +47,10 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: Option<&View>) {
     let places = places(app, view, area);
     let body = body(&places, view);
     match (&app.overlay, view) {
-        (Overlay::Help(help), _) => {
+        (Overlay::Text(page), _) => {
             let context = app.context(view, &[]);
-            help::draw(buffer, body, help, &app.theme, &app.keymap, &context);
+            textpage::draw(buffer, body, page, &app.theme, &app.keymap, &context, view);
         }
-        (Overlay::Manual(reader), _) => manual::draw(buffer, body, reader, &app.theme),
-        (Overlay::Solver(reader), _) => solver::draw(buffer, body, reader, view, &app.theme),
         (Overlay::Chart(page), _) => workprecision::draw(buffer, body, page, &app.theme),
         (Overlay::Chooser(chooser), _) => {
             let picture = chooser::draw(buffer, body, chooser, app);

@@ -54,7 +54,7 @@ pub fn pictures(
     stepper.drive(Until::end(), |stepper| {
         history.add(stepper);
         let event = stepper.event();
-        if matches!(event.outcome, Outcome::Increment { .. }) {
+        if event.outcome.is_accepted() {
             travelled += (event.load_factor - load).abs();
             load = event.load_factor;
         }

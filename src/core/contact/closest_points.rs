@@ -66,7 +66,7 @@ pub fn find(
         .iter()
         .map(|&surface| &surfaces[surface])
         .filter(|chain| !chain.endless)
-        .flat_map(|chain| chain.elements.iter().flatten())
+        .flat_map(|chain| chain.nodes())
         .map(|&n| squared(minus(point, positions[n])))
         .fold(f64::INFINITY, f64::min)
         .sqrt()

@@ -309,7 +309,7 @@ mod tests {
             );
             // The walk runs from right to left: t of the mean normal is −x.
             let (mean_n, mean_t) = (f[1], -f[0]);
-            let limit = wide.coefficient() * mean_n + wide.cohesion;
+            let limit = wide.limit(mean_n);
             assert!((mean_t + limit).abs() < 1e-12, "{mean_t} {limit}");
         }
     }
@@ -325,7 +325,7 @@ mod tests {
             let mu = friction.coefficient();
             let (before, behind) = (side(75.0, mu, cohesion), side(105.0, mu, cohesion));
             for f_n in [0.7, 3.0] {
-                let limit = narrow.coefficient() * f_n + narrow.cohesion;
+                let limit = narrow.limit(f_n);
                 for (part, held) in [
                     (0.999, true),
                     (-0.999, true),
@@ -395,7 +395,7 @@ mod tests {
             let wide = widened(&friction, half);
             for f_n in [0.0, 0.05, 0.3, 2.0] {
                 let least = least_friction(&friction, half, f_n);
-                let most = wide.coefficient() * f_n + wide.cohesion;
+                let most = wide.limit(f_n);
                 // The walk runs from right to left: t of the mean normal is −x.
                 let beyond = |f_t: f64| beyond_slid([-f_t, f_n], [&before, &behind], -1.0);
                 let off = 1e-9;

@@ -9,7 +9,7 @@
 
 use crate::contact::projection::{STRAIGHT, blend, right_of};
 use crate::model::Surface;
-use crate::plane::{cross, dot, length, minus, unit};
+use crate::plane::{cross, dot, length, minus, plus, unit};
 use crate::{SurfaceElement, SurfacePoint};
 
 /// Maximum number of Newton steps; straight chains need one.
@@ -34,7 +34,7 @@ impl Crossing {
     /// Mean of the two normals (unit).
     pub fn normal(&self) -> [f64; 2] {
         let [a, b] = self.normals;
-        unit([a[0] + b[0], a[1] + b[1]]).unwrap_or(a)
+        unit(plus(a, b)).unwrap_or(a)
     }
 }
 

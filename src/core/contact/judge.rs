@@ -32,7 +32,7 @@ use crate::contact::side_laws::{Amounts, SideHistory, TouchedSide};
 use crate::contact::side_laws::{beyond_border, in_corner, on_side, slip_into};
 use crate::contact::stick_point::{ahead, distance};
 use crate::model::{Bond, Contact, Surface};
-use crate::plane::{self, dot, length, minus, unit};
+use crate::plane::{self, dot, length, minus, plus, unit};
 use crate::{
     Finding, Friction, JudgedLaw, JudgedNumbers, Scales, SurfaceElement, SurfacePoint, Verdict,
 };
@@ -95,7 +95,7 @@ impl JudgedState<'_> {
 
 /// A position shifted by a displacement, if there is one.
 fn further(at: [f64; 2], way: Option<&[f64; 2]>) -> [f64; 2] {
-    way.map_or(at, |way| [at[0] + way[0], at[1] + way[1]])
+    way.map_or(at, |way| plus(at, *way))
 }
 
 /// The judge and its workspace.
@@ -551,7 +551,7 @@ fn outward_at(foot: &ClosestPoint, surfaces: &[Surface], positions: &[[f64; 2]])
     let across = beyond_border(surfaces, foot.spot).filter(|_| foot.spot.xi.abs() == 1.0);
     across.map_or(n, |across| {
         let other = normal(across);
-        [n[0] + other[0], n[1] + other[1]]
+        plus(n, other)
     })
 }
 

@@ -7,7 +7,7 @@
 
 use crate::fem::lagrange::MAX_NODES;
 use crate::model::Surface;
-use crate::plane::{cross, dot, length, minus, unit};
+use crate::plane::{cross, dot, length, minus, plus, unit};
 use crate::{ElementPositions, SurfaceElement};
 
 /// Distance beyond an end of a chain at which a node still counts as over it, relative to the last element's length.
@@ -173,7 +173,7 @@ fn nearest_node(
         .iter()
         .map(|&surface| &surfaces[surface])
         .filter(|surface| surface.smooth.is_empty())
-        .flat_map(|surface| surface.elements.iter().flatten())
+        .flat_map(|surface| surface.nodes())
         .map(|&node| {
             let [x, y] = minus(slave, positions[node]);
             x * x + y * y
@@ -347,7 +347,7 @@ fn normal_at(
 /// Mean of the outward normals (unit) of two sides with these dx/dξ.
 pub fn mean_normal(one: [f64; 2], other: [f64; 2]) -> [f64; 2] {
     let [own, across] = [one, other].map(right_of);
-    unit([own[0] + across[0], own[1] + across[1]]).unwrap_or(own)
+    unit(plus(own, across)).unwrap_or(own)
 }
 
 /// The last point that has the side's own normal, on the side ahead of a border (along the walk) or on the one behind it.

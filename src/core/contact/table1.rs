@@ -141,7 +141,7 @@ fn sliding(known: &SlipDirection) -> Equation {
 
 /// T_max = sign (tan φ |F_n| + c), eqn (20); `sign` is the direction of the tangential force (−1, 1, or 0 if unknown).
 pub fn t_max(friction: &Friction, f_n: f64, sign: f64) -> f64 {
-    (f_n.abs() * friction.coefficient() + friction.cohesion) * sign
+    friction.limit(f_n.abs()) * sign
 }
 
 /// The direction of T_max (−1, 0 or 1): the sign of `f_t` if |F_t| > `tiny_force`; else the sign of `slip` if

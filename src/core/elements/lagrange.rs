@@ -187,7 +187,7 @@ pub fn gauss(count: usize) -> Vec<(f64, f64)> {
 }
 
 /// The Legendre polynomial of this degree and its derivative, for |x| < 1.
-fn legendre(degree: usize, x: f64) -> (f64, f64) {
+pub fn legendre(degree: usize, x: f64) -> (f64, f64) {
     let (mut p0, mut p1) = (1.0, x);
     if degree == 0 {
         return (1.0, 0.0);

@@ -7,6 +7,7 @@
 //! ```
 
 use super::element::{self, Previous};
+use crate::plane::plus;
 
 /// A bar.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,7 +31,7 @@ impl element::Element for TrussElement {
     fn add(&self, _: &Previous<'_>, u: &[f64], force: &mut [f64], tangent: &mut [f64]) -> bool {
         let along = [0, 1].map(|k| self.at[1][k] - self.at[0][k]);
         let moved = [0, 1].map(|k| u[2 + k] - u[k]);
-        let now = [along[0] + moved[0], along[1] + moved[1]];
+        let now = plus(along, moved);
         let (before, length) = (along[0].hypot(along[1]), now[0].hypot(now[1]));
         if length.is_nan() || length <= 0.0 {
             return false;

@@ -1,6 +1,8 @@
 //! A sparse matrix over the contacts, column by column: square blocks of D components, the normal one and one tangential one, or
 //! two of them in space.
 
+use crate::groups::{Connected, distinct};
+
 /// A square matrix over the contacts, stored by its blocks.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Blocks<const D: usize = 2> {
@@ -22,11 +24,8 @@ impl<const D: usize> Blocks<D> {
         contacts: usize,
         entries: impl Iterator<Item = (usize, usize, f64)> + Clone,
     ) -> Self {
-        let mut places: Vec<(usize, usize)> =
-            entries.clone().map(|(i, j, _)| (j / D, i / D)).collect();
-        places.extend((0..contacts).map(|k| (k, k)));
-        places.sort_unstable();
-        places.dedup();
+        let places = entries.clone().map(|(i, j, _)| (j / D, i / D));
+        let places = distinct(places.chain((0..contacts).map(|k| (k, k))));
         let mut blocks = Blocks::at(contacts, &places);
         for (i, j, value) in entries {
             if let Some(block) = blocks.find(i / D, j / D) {
@@ -147,34 +146,12 @@ impl<const D: usize> Blocks<D> {
 
     /// The independent parts: groups of contacts between which there are no blocks, each in ascending order.
     pub fn parts(&self) -> Vec<Vec<usize>> {
-        let mut leader: Vec<usize> = (0..self.contacts()).collect();
+        let mut groups = Connected::new(self.contacts());
         for j in 0..self.contacts() {
-            for (i, _) in self.column(j) {
-                let (a, b) = (root(&mut leader, i), root(&mut leader, j));
-                leader[a.max(b)] = a.min(b);
-            }
+            self.column(j).for_each(|(i, _)| groups.join(i, j));
         }
-        let mut number = vec![None; self.contacts()];
-        let mut parts: Vec<Vec<usize>> = Vec::new();
-        for k in 0..self.contacts() {
-            let first = root(&mut leader, k);
-            let part = *number[first].get_or_insert(parts.len());
-            if part == parts.len() {
-                parts.push(Vec::new());
-            }
-            parts[part].push(k);
-        }
-        parts
+        groups.parts()
     }
-}
-
-/// The smallest known contact of the part that contains `k`.
-fn root(leader: &mut [usize], mut k: usize) -> usize {
-    while leader[k] != k {
-        leader[k] = leader[leader[k]];
-        k = leader[k];
-    }
-    k
 }
 
 #[cfg(test)]

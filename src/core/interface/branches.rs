@@ -16,6 +16,7 @@
 
 use crate::interface::feasible::BoundedForms;
 use crate::linalg::DenseFactors;
+use crate::plane::max_abs;
 use crate::{AssumedMode, InterfaceProblem};
 
 /// Relaxation of every bound, in the problem's units of force and length. A combination is consistent if it violates them by at
@@ -337,7 +338,7 @@ impl<'a> Branches<'a> {
         if energy < 1e-6 || energy < 0.03 * size {
             return false;
         }
-        let largest = tangent.iter().fold(0.0_f64, |m, t| m.max(t.1.abs()));
+        let largest = max_abs(tangent.iter().map(|(_, factor)| factor));
         tangent.iter_mut().for_each(|t| t.1 /= largest);
         // A weakened tangent: the loss of convexity by round-off is much smaller than the margin.
         let high = (energy + 1e-9 * size) / largest;
@@ -536,7 +537,7 @@ impl Energy {
 /// Whether a symmetric matrix has no eigenvalue below round-off: LDLᵀ with a shift of the round-off's size.
 fn is_semidefinite(matrix: &[f64], count: usize) -> bool {
     let mut a = matrix.to_vec();
-    let largest = (0..count).fold(0.0_f64, |m, i| m.max(a[i * count + i].abs()));
+    let largest = max_abs(a.iter().step_by(count + 1));
     let shift = 1e-14 * count as f64 * largest;
     for k in 0..count {
         let pivot = a[k * count + k] + shift;

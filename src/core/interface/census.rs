@@ -5,6 +5,7 @@
 //! fixed, sliding in either direction); for few nodes all of them are tried. For more, [`search`] treats each block of the matrix
 //! separately and tries only combinations that branch and bound ([`crate::interface::branches`]) does not rule out.
 
+use crate::groups::Connected;
 use crate::interface::branches;
 use crate::interface::problem::{self, Answer, Margin, SINGULAR};
 use crate::plane::max_abs;
@@ -188,28 +189,12 @@ fn blocks(problem: &InterfaceProblem) -> Vec<Vec<usize>> {
         let entry = |i: usize, j: usize| problem.relation.response[j * count + i] != 0.0;
         (0..4).any(|k| entry(2 * a + k % 2, 2 * b + k / 2) || entry(2 * b + k % 2, 2 * a + k / 2))
     };
-    let mut block_of: Vec<Option<usize>> = vec![None; nodes];
-    let mut blocks: Vec<Vec<usize>> = Vec::new();
-    for first in 0..nodes {
-        if block_of[first].is_some() {
-            continue;
-        }
-        let mut block = vec![first];
-        block_of[first] = Some(blocks.len());
-        let mut next = 0;
-        while let Some(&node) = block.get(next) {
-            for (other, of) in block_of.iter_mut().enumerate() {
-                if of.is_none() && touches(node, other) {
-                    *of = Some(blocks.len());
-                    block.push(other);
-                }
-            }
-            next += 1;
-        }
-        block.sort_unstable();
-        blocks.push(block);
+    let mut groups = Connected::new(nodes);
+    for b in 0..nodes {
+        let touching = (0..b).filter(|&a| touches(a, b));
+        touching.for_each(|a| groups.join(a, b));
     }
-    blocks
+    groups.parts()
 }
 
 /// The sub-problem of a block.

@@ -63,7 +63,7 @@ pub(super) fn lawful(
 ) -> Option<ConeContact> {
     let ([f_n, f_1, f_2], [gap, u_1, u_2]) = (force, motion);
     let (shear, slip) = (f_1.hypot(f_2), u_1.hypot(u_2));
-    let limit = friction.coefficient() * f_n + friction.cohesion;
+    let limit = friction.limit(f_n);
     let touches = f_n > 0.0;
     let slides = slip > SOUND * length;
     let unlawful = match (touches, slides) {

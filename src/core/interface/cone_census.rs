@@ -10,6 +10,7 @@
 //! with T the tangential rows and M their friction coefficients, so that a smallest eigenvalue of W above ‖M T W‖ excludes two.
 
 use super::cone::{ConeContact, lawful};
+use crate::plane::max_abs;
 use crate::{Friction, Mode};
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::FRAC_PI_2;
@@ -110,10 +111,7 @@ fn is_same(one: &[ConeContact], other: &[ConeContact]) -> bool {
     let forces =
         |state: &[ConeContact]| -> Vec<f64> { state.iter().flat_map(|c| c.force).collect() };
     let (one, other) = (forces(one), forces(other));
-    let largest = one
-        .iter()
-        .chain(&other)
-        .fold(0.0, |most: f64, f| most.max(f.abs()));
+    let largest = max_abs(one.iter().chain(&other));
     one.iter()
         .zip(&other)
         .all(|(a, b)| (a - b).abs() <= SAME * largest)

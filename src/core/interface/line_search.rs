@@ -69,7 +69,7 @@ impl LineSearch {
 pub fn natural_map([f_n, f_t, gap, slip]: [f64; 4], friction: &Friction, spring: f64) -> f64 {
     let pressure = (f_n - spring * gap).max(0.0);
     let limit = if pressure > 0.0 {
-        friction.coefficient() * pressure + friction.cohesion
+        friction.limit(pressure)
     } else {
         0.0
     };

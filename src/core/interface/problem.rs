@@ -306,7 +306,7 @@ pub fn node_answer(
     NodeIncrement { force, motion }: NodeIncrement,
 ) -> NodeAnswer {
     let (f_n, f_t) = (node.state.f_n + force[0], node.state.f_t + force[1]);
-    let limit = f_n.abs() * node.friction.coefficient() + node.friction.cohesion;
+    let limit = node.friction.limit(f_n.abs());
     let gap = node.kinematics.map_or(f64::INFINITY, |k| k.gap) - motion[0];
     let slip = node.state.slipped(&problem.settings) + motion[1];
     let of_force = |condition, value: f64| Margin {

@@ -49,7 +49,7 @@ pub fn vertex(problem: &InterfaceProblem, nodes: &mut [NodeForce]) {
             AssumedMode::Free => *put = [0.0; 2],
             does => {
                 let friction = &problem.nodes[bound.place].friction;
-                put[1] = does.sign() * (friction.coefficient() * put[0] + friction.cohesion);
+                put[1] = does.sign() * friction.limit(put[0]);
             }
         }
         keep(&bound, &mut still);
@@ -160,7 +160,7 @@ fn nearest(problem: &InterfaceProblem, nodes: &[NodeForce], along: &[f64]) -> Op
     };
     for (place, (does, [f_n, f_t])) in nodes.iter().enumerate() {
         let friction = &problem.nodes[place].friction;
-        let limit = friction.coefficient() * f_n + friction.cohesion;
+        let limit = friction.limit(*f_n);
         match does {
             AssumedMode::Free => {}
             AssumedMode::Plus | AssumedMode::Minus => {

@@ -7,9 +7,6 @@ use crate::interface::kinematics::through;
 use crate::plane::dot;
 use crate::{ContactState, Equation, Model, RelativeMotion};
 
-/// Estimated norm of the scaled inverse above which a system is suspected to be singular.
-const SUSPICIOUS: f64 = 1e12;
-
 impl System {
     pub(super) fn solve_augmented(
         &mut self,
@@ -126,7 +123,7 @@ impl System {
         if factors.factor(&self.values).is_err() || factors.solve(&self.rhs, &mut self.x).is_err() {
             return SolveResult::Not;
         }
-        suspicion(factors.inverse_norm())
+        SolveResult::from_norm(factors.inverse_norm())
     }
 
     pub(super) fn motion_of_solution(
@@ -168,12 +165,4 @@ pub(super) fn springs(give: f64) -> [Equation; 2] {
             value: 0.0,
         },
     ]
-}
-
-pub(super) fn suspicion(inverse_norm: f64) -> SolveResult {
-    if inverse_norm > SUSPICIOUS {
-        SolveResult::NearlySingular
-    } else {
-        SolveResult::Well
-    }
 }

@@ -2,21 +2,22 @@
 
 use crate::contact::balance::{self, Forces};
 use crate::contact::judge::{Judge, JudgedState};
-use crate::contact::state::{in_mode, largest_drift};
 use crate::contact::stick_point::pierced;
 use crate::contact::tracking::Ground;
 use crate::executor::{Executor, SequentialExecutor};
 use crate::fem::assembly::history_len;
 use crate::fem::deformation::deformation;
+use crate::groups::marked;
 use crate::linalg::SolveError;
-use crate::linear::drag::add_drag;
 use crate::linear::point_forces::PointForces;
+use crate::linear::residual::loads;
 use crate::linear::singular;
 use crate::linear::sizes::Sizes;
+use crate::linear::source::value;
 use crate::linear::system::System;
 use crate::linear::tangent::Tangent;
-use crate::model::{Axis, Contact, Factor, MonitorQuantity};
-use crate::plane::larger;
+use crate::model::{Contact, Factor, MonitorQuantity, Surface};
+use crate::plane::{larger, plus};
 use crate::{
     ContactState, Deformation, Estimate, Friction, InterfaceProblem, JudgedLaw, LinearisationPoint,
     Mode, Model, NodeIncrement, NodeKinematics, Norms, Scales, Settings, Singular, SolveResult,
@@ -132,49 +133,11 @@ impl Bodies {
     }
 }
 
-/// Value of a monitor that needs only displacements and contacts; not a number for the others.
-pub(super) fn value(
-    watched: &MonitorQuantity,
-    contacts: &[Contact],
-    at: &LinearisationPoint<'_>,
-) -> f64 {
-    match watched {
-        MonitorQuantity::Displacement { dof } => at.u[*dof],
-        MonitorQuantity::Contact { slaves, axis } => {
-            let k = if *axis == Axis::X { 0 } else { 1 };
-            slaves.iter().map(|&s| at.contacts[s].force()[k]).sum()
-        }
-        MonitorQuantity::Modes { slaves, mode } => in_mode(at.contacts, slaves, *mode),
-        MonitorQuantity::Drift { slaves } => largest_drift(at.contacts, slaves),
-        MonitorQuantity::Pressure { slaves, shear } => {
-            pressure(contacts, at.contacts, slaves, *shear)
-        }
-        MonitorQuantity::Arc => at.arc,
-        MonitorQuantity::Reported { .. } | MonitorQuantity::Reaction { .. } => f64::NAN,
-    }
-}
-
-/// Pressure or shear of the contact where its magnitude is largest.
-fn pressure(contacts: &[Contact], states: &[ContactState], slaves: &[usize], shear: bool) -> f64 {
-    let of = |&s: &usize| {
-        let both = contacts[s].pressure(states[s].f_n, states[s].f_t)?;
-        Some(both[usize::from(shear)])
-    };
-    let all = slaves.iter().filter_map(of);
-    all.fold(
-        0.0,
-        |most: f64, p| if p.abs() > most.abs() { p } else { most },
-    )
-}
-
 /// Whether the force of each contact can be computed from the stresses. It cannot if a support or a second contact contributes to
 /// its node's force, or if the node belongs to a master surface.
 fn stresses_tell(model: &Model) -> Vec<bool> {
-    let mut master = vec![false; model.nodes.len()];
-    for surface in model.surfaces.iter().filter(|surface| !surface.rigid) {
-        let nodes = surface.elements.iter().flatten();
-        nodes.for_each(|&node| master[node] = true);
-    }
+    let masters = model.surfaces.iter().filter(|surface| !surface.rigid);
+    let master = marked(model.nodes.len(), masters.flat_map(Surface::nodes));
     let mut contacts = vec![0; model.nodes.len()];
     model.contacts.iter().for_each(|c| contacts[c.node] += 1);
     let tell = |node: usize| {
@@ -422,11 +385,9 @@ impl Source for Bodies {
         let scales = self.scales(at.chosen.tolerance, after);
         let (model, bench) = (&self.model, &mut self.bench);
         bench.before.clear();
-        let at_start = model.dofs.first.iter().zip(&model.nodes);
-        bench.before.extend(at_start.map(|(&first, node)| {
-            let u = &at.accepted.u[first..first + 2];
-            [node.at[0] + u[0], node.at[1] + u[1]]
-        }));
+        let nodes = 0..model.nodes.len();
+        let at_start = nodes.map(|node| model.place(at.accepted.u, node));
+        bench.before.extend(at_start);
         bench.forces.clear();
         let forces = at.contacts.iter().map(|state| state.force());
         bench.forces.extend(forces);
@@ -497,14 +458,8 @@ impl Source for Bodies {
             scales,
         };
         let mut verdict = bench.judge.interface(&seen, &mut bench.contact);
-        bench.load.fill(0.0);
-        for load in &model.loads {
-            bench.load[load.dof] += load.value * load.scale.at(at.last_target);
-        }
-        let factor = |scale: &Factor| scale.at(at.last_target);
-        let pressures = &self.system.pressures;
-        pressures.each(model, at.u, factor, |dof, part| bench.load[dof] += part);
-        add_drag(model, at, &self.system.sizes, &mut bench.load);
+        let known = (&self.system.pressures, &self.system.sizes);
+        loads(model, at, at.last_target, known, &mut bench.load);
         let forces = Forces {
             internal: self.system.internal(),
             load: &bench.load,
@@ -531,7 +486,7 @@ impl Source for Bodies {
         let out = |k: usize| self.bench.out[1].get(k).copied().unwrap_or_default();
         for (k, ((state, was), contact)) in states.zip(&self.model.contacts).enumerate() {
             let (at, out) = (before[contact.node], out(k));
-            let at = [at[0] + out[0], at[1] + out[1]];
+            let at = plus(at, out);
             let touched = Judge::touched(&self.model.surfaces, contact, at, before, near);
             let Some(touched) = touched.filter(|_| !contact.bond.is_tied()) else {
                 continue;

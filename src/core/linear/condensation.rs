@@ -28,6 +28,7 @@
 //! and only the masters' block K'_mm must be factored. This is the relation of `condensed` in the limit of stiff springs.
 
 use crate::executor::{Executor, each};
+use crate::groups::distinct;
 use crate::linalg::{DenseFactors, Pattern, SolveError, SymmetricFactors, subtract_product};
 use crate::linear::coupling::Interface;
 use crate::linear::far_masters::FarMasters;
@@ -651,14 +652,10 @@ fn direct_equations(model: &Model) -> Option<Vec<usize>> {
 }
 
 /// The equations of all slave nodes and of the surfaces that they may touch, ascending.
-fn interface_equations(model: &Model) -> Vec<usize> {
+pub(super) fn interface_equations(model: &Model) -> Vec<usize> {
     let slaves = model.contacts.iter().flat_map(Contact::carriers);
     let slaves = slaves.map(|(node, _)| node);
-    let mut equations = equations_of(model, slaves);
-    equations.extend(master_equations(model));
-    equations.sort_unstable();
-    equations.dedup();
-    equations
+    distinct(equations_of(model, slaves).chain(master_equations(model)))
 }
 
 /// The equations of the surfaces that slave nodes may touch, ascending.
@@ -668,20 +665,13 @@ fn master_equations(model: &Model) -> Vec<usize> {
         .iter()
         .flat_map(|slave| &slave.surfaces)
         .filter(|&&surface| !model.surfaces[surface].rigid)
-        .flat_map(|&surface| model.surfaces[surface].elements.iter().flatten());
-    let mut nodes: Vec<usize> = masters.copied().collect();
-    nodes.sort_unstable();
-    nodes.dedup();
-    let mut equations = equations_of(model, nodes.into_iter());
-    equations.sort_unstable();
-    equations
+        .flat_map(|&surface| model.surfaces[surface].nodes());
+    distinct(equations_of(model, masters.copied()))
 }
 
-fn equations_of(model: &Model, nodes: impl Iterator<Item = usize>) -> Vec<usize> {
-    nodes
-        .flat_map(|node| {
-            let first = model.dofs.first[node];
-            (first..first + 2).filter_map(|dof| model.dofs.equation[dof])
-        })
-        .collect()
+fn equations_of(model: &Model, nodes: impl Iterator<Item = usize>) -> impl Iterator<Item = usize> {
+    nodes.flat_map(|node| {
+        let first = model.dofs.first[node];
+        (first..first + 2).filter_map(|dof| model.dofs.equation[dof])
+    })
 }

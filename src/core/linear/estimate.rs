@@ -15,6 +15,7 @@
 //! Contacts with a sparse compliance need memory proportional to its entries, and time proportional to the sweeps over them.
 
 use crate::Model;
+use crate::linear::condensation::interface_equations;
 use crate::linear::sparse_contacts::sparse_contacts;
 use crate::model::{Body, BodyKind, Form, Linear, LinearSolver};
 use std::fmt;
@@ -106,7 +107,8 @@ impl Estimate {
             }
         }
         let base = PROGRAM + UNKNOWN * model.dofs.len() as f64 + GIVEN * given;
-        let (c, z) = (displacements(model), 2.0 * model.contacts.len() as f64);
+        let c = interface_equations(model).len() as f64;
+        let z = 2.0 * model.contacts.len() as f64;
         let forces = MINORS / 3.0 * z.powi(3) / DENSE;
         let over_forces = 8.0 * OVER_FORCES * z * z;
         let condensed = if condensable(model) {
@@ -315,32 +317,6 @@ fn factoring(body: &Body) -> (Factoring, Factoring) {
 /// Whether a large fraction of a matrix is nonzero.
 fn is_dense(linear: &Linear, nodes: usize) -> bool {
     linear.entries.len() as f64 > (nodes as f64).powi(2)
-}
-
-/// Unknown displacements of the slave nodes and of all nodes of the surfaces that they may touch.
-fn displacements(model: &Model) -> f64 {
-    let mut wanted = vec![false; model.nodes.len()];
-    let mut surfaces = vec![false; model.surfaces.len()];
-    for slave in &model.contacts {
-        slave.carriers().for_each(|(n, _)| wanted[n] = true);
-        slave.surfaces.iter().for_each(|&s| surfaces[s] = true);
-    }
-    for (surface, met) in model.surfaces.iter().zip(surfaces) {
-        if met && !surface.rigid {
-            surface
-                .elements
-                .iter()
-                .flatten()
-                .for_each(|&n| wanted[n] = true);
-        }
-    }
-    let of = |node: usize| {
-        let first = model.dofs.first[node];
-        let moves = |dof: &usize| model.dofs.equation[*dof].is_some();
-        (first..first + 2).filter(moves).count()
-    };
-    let nodes = wanted.iter().enumerate().filter(|(_, wanted)| **wanted);
-    nodes.map(|(node, _)| of(node)).sum::<usize>() as f64
 }
 
 /// Number of unknowns in the dense part of a stability check: `c` of the interface, and all unknowns of bodies that need pivoting.

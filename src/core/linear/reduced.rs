@@ -1,12 +1,12 @@
 //! Minor iterations on the interface alone; the bodies are condensed to it once per major iteration (eqn 6).
 
-use super::augmented::{springs, suspicion};
+use super::augmented::springs;
 use super::source::{LinearisationPoint, SolveResult};
 use super::system::{Layout, System};
 use crate::interface::kinematics::through;
 use crate::linalg::{Factors, SolveError};
 use crate::plane::max_abs;
-use crate::{InterfaceProblem, Model, ProblemNode};
+use crate::{InterfaceProblem, Model};
 
 /// Estimated norm of the scaled inverse above which the interface's system is suspected to be singular. The limit is lower than
 /// for the full system because the springs that support a loose body cost digits before they cancel.
@@ -48,7 +48,7 @@ impl System {
         if norm > SUSPICIOUS {
             return SolveResult::NearlySingular;
         }
-        suspicion(self.condensed.norm)
+        SolveResult::from_norm(self.condensed.norm)
     }
 
     /// The interface problem of the last linearisation for analysis, with tied nodes eliminated. Costs a condensation unless the
@@ -69,21 +69,14 @@ impl System {
             self.condensed.fresh = true;
         }
         let relation = self.condensed.relation.clone();
-        let nodes = at
-            .contacts
-            .iter()
-            .enumerate()
-            .map(|(slave, node)| ProblemNode {
-                slave,
-                kinematics: self.kinematics(slave),
-                prescribed: [0, 1]
-                    .map(|k| self.interfaces[slave].prescribed_along(k, &self.frames[slave])),
-                friction: node.friction(&at.friction[slave]),
-                state: *node,
-            });
+        let nodes = at.nodes(|slave| {
+            let (interface, frame) = (&self.interfaces[slave], &self.frames[slave]);
+            let prescribed = [0, 1].map(|k| interface.prescribed_along(k, frame));
+            (self.kinematics(slave), prescribed)
+        });
         let largest = max_abs(&relation.start);
         let problem = InterfaceProblem {
-            nodes: nodes.collect(),
+            nodes,
             force: if self.norms.scale > 0.0 {
                 self.norms.scale
             } else {

@@ -3,11 +3,12 @@
 use super::drag::add_drag;
 use super::norms::Norms;
 use super::partners::find_points;
-use super::sizes::ROUND_OFF;
+use super::sizes::{ROUND_OFF, Sizes};
 use super::source::LinearisationPoint;
 use super::system::{Layout, System, executor_for, moved};
 use super::violation::violation;
 use crate::Model;
+use crate::fem::pressure::Pressures;
 use crate::linalg::Factors;
 use crate::model::Factor;
 use crate::plane::larger;
@@ -124,14 +125,8 @@ impl System {
     }
 
     pub(super) fn load(&mut self, model: &Model, at: &LinearisationPoint<'_>) {
-        self.external.fill(0.0);
-        for load in &model.loads {
-            self.external[load.dof] += load.value * load.scale.at(at.target);
-        }
-        let (external, factor) = (&mut self.external, |scale: &Factor| scale.at(at.target));
-        self.pressures
-            .each(model, at.u, factor, |dof, part| external[dof] += part);
-        add_drag(model, at, &self.sizes, &mut self.external);
+        let known = (&self.pressures, &self.sizes);
+        loads(model, at, at.target, known, &mut self.external);
     }
 
     /// Computes the internal forces, unless the assembly did, and at the same time their round-off and that of lengths that should
@@ -200,4 +195,21 @@ impl System {
     pub fn interaction(&self, dof: usize) -> f64 {
         self.interaction[dof]
     }
+}
+
+/// Computes the loads on all degrees of freedom at a load factor.
+pub(super) fn loads(
+    model: &Model,
+    at: &LinearisationPoint<'_>,
+    target: f64,
+    (pressures, sizes): (&Pressures, &Sizes),
+    out: &mut [f64],
+) {
+    out.fill(0.0);
+    for load in &model.loads {
+        out[load.dof] += load.value * load.scale.at(target);
+    }
+    let factor = |scale: &Factor| scale.at(target);
+    pressures.each(model, at.u, factor, |dof, part| out[dof] += part);
+    add_drag(model, at, sizes, out);
 }

@@ -4,13 +4,14 @@
 //! Motions that satisfy all conditions are resisted only by existing stresses.
 
 use crate::contact::projection::{Projection, tangent};
+use crate::groups::distinct;
 use crate::model::BodyKind;
 use crate::model::Component;
-use crate::plane::{max_abs, minus};
+use crate::plane::{max_abs, minus, plus};
 use crate::{ContactState, Mode, Model};
 use nalgebra::{DMatrix, RowVector3};
 use serde::{Deserialize, Serialize};
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeMap, HashMap};
 
 /// Condition values and amplitudes below this count as zero; both are of order one.
 const ZERO: f64 = 1e-9;
@@ -93,9 +94,6 @@ pub fn diagnose<'a>(
 /// A condition: the coefficients of its columns, which are x, y and rotation (times the scene's length) of each body.
 type Row = BTreeMap<usize, f64>;
 
-/// Values by column, in ascending order of the columns.
-type SparseVector = Vec<(usize, f64)>;
-
 /// Rigid motions of all bodies.
 struct Frame<'a> {
     model: &'a Model,
@@ -113,7 +111,7 @@ impl<'a> Frame<'a> {
             let mut sum = [0.0; 2];
             for &n in &body.nodes {
                 owners.entry(n).or_insert(b);
-                sum = [sum[0] + positions[n][0], sum[1] + positions[n][1]];
+                sum = plus(sum, positions[n]);
             }
             centers.push(sum.map(|s| s / body.nodes.len() as f64));
         }
@@ -216,9 +214,9 @@ impl<'a> Frame<'a> {
     }
 
     /// Describes the motion of each body in a null vector.
-    fn name(&self, v: &SparseVector) -> Vec<RigidMotion> {
-        let size = max_abs(v.iter().map(|(_, x)| x));
-        let mut bodies: Vec<usize> = v.iter().map(|(column, _)| column / 3).collect();
+    fn name(&self, v: &Row) -> Vec<RigidMotion> {
+        let size = max_abs(v.values());
+        let mut bodies: Vec<usize> = v.keys().map(|column| column / 3).collect();
         bodies.dedup();
         bodies
             .into_iter()
@@ -246,7 +244,7 @@ impl<'a> Frame<'a> {
 ///
 /// The bodies are eliminated one after the other, by a QR decomposition of the conditions that contain them, so that the cost grows
 /// with the number of bodies where each touches few others.
-fn null_space(conditions: Vec<Row>, bodies: usize) -> Vec<SparseVector> {
+fn null_space(conditions: Vec<Row>, bodies: usize) -> Vec<Row> {
     let mut waiting = vec![Vec::new(); bodies];
     let wait = |waiting: &mut Vec<Vec<Row>>, row: Row| {
         if let Some(first) = row.keys().next() {
@@ -293,7 +291,7 @@ fn null_space(conditions: Vec<Row>, bodies: usize) -> Vec<SparseVector> {
             .map(|&c| values[c] * values[c])
             .sum::<f64>()
             .sqrt();
-        let v: SparseVector = moved.iter().map(|&c| (c, values[c] / size)).collect();
+        let v: Row = moved.iter().map(|&c| (c, values[c] / size)).collect();
         moved.iter().for_each(|&c| values[c] = 0.0);
         basis.push(v);
     }
@@ -307,11 +305,10 @@ fn eliminated(rows: &[Row], body: usize, pivots: &mut Vec<(usize, Row)>) -> Vec<
     if rows.is_empty() {
         return Vec::new();
     }
-    let others: BTreeSet<usize> = rows.iter().flat_map(BTreeMap::keys).copied().collect();
-    let others: Vec<usize> = others.into_iter().filter(|c| c / 3 != body).collect();
-    let at = |row: &Row, column: usize| row.get(&column).copied().unwrap_or(0.0);
-    let own = DMatrix::from_fn(rows.len(), 3, |i, j| at(&rows[i], 3 * body + j));
-    let mut rest = DMatrix::from_fn(rows.len(), others.len(), |i, j| at(&rows[i], others[j]));
+    let columns = rows.iter().flat_map(BTreeMap::keys).copied();
+    let others = distinct(columns.filter(|c| c / 3 != body));
+    let own = DMatrix::from_fn(rows.len(), 3, |i, j| entry(&rows[i], 3 * body + j));
+    let mut rest = DMatrix::from_fn(rows.len(), others.len(), |i, j| entry(&rows[i], others[j]));
     let qr = own.col_piv_qr();
     qr.q_tr_mul(&mut rest);
     let (r, mut own) = (qr.r(), RowVector3::new(0, 1, 2));
@@ -341,10 +338,10 @@ fn eliminated(rows: &[Row], body: usize, pivots: &mut Vec<(usize, Row)>) -> Vec<
 }
 
 /// Gauss-Jordan elimination.
-fn reduce(basis: &mut [SparseVector], columns: usize) {
+fn reduce(basis: &mut [Row], columns: usize) {
     let mut done = 0;
     for column in 0..columns {
-        let size = |v: &SparseVector| entry(v, column).abs();
+        let size = |v: &Row| entry(v, column).abs();
         let Some(pivot) =
             (done..basis.len()).max_by(|&a, &b| size(&basis[a]).total_cmp(&size(&basis[b])))
         else {
@@ -355,12 +352,15 @@ fn reduce(basis: &mut [SparseVector], columns: usize) {
         }
         basis.swap(done, pivot);
         let scale = entry(&basis[done], column);
-        basis[done].iter_mut().for_each(|(_, x)| *x /= scale);
+        basis[done].values_mut().for_each(|x| *x /= scale);
         let row = basis[done].clone();
         for (k, other) in basis.iter_mut().enumerate() {
             let factor = entry(other, column);
             if k != done && factor != 0.0 {
-                *other = subtracted(other, factor, &row);
+                for (&column, x) in &row {
+                    *other.entry(column).or_default() -= factor * x;
+                }
+                other.retain(|_, x| *x != 0.0);
             }
         }
         done += 1;
@@ -368,28 +368,8 @@ fn reduce(basis: &mut [SparseVector], columns: usize) {
 }
 
 /// Value of a vector in a column.
-fn entry(v: &SparseVector, column: usize) -> f64 {
-    v.binary_search_by_key(&column, |(c, _)| *c)
-        .map_or(0.0, |at| v[at].1)
-}
-
-/// a − factor b.
-fn subtracted(a: &SparseVector, factor: f64, b: &SparseVector) -> SparseVector {
-    let mut all = SparseVector::with_capacity(a.len() + b.len());
-    let (mut a, mut b) = (a.iter().peekable(), b.iter().peekable());
-    loop {
-        let column = match (a.peek(), b.peek()) {
-            (Some(x), Some(y)) => x.0.min(y.0),
-            (Some(one), None) | (None, Some(one)) => one.0,
-            (None, None) => return all,
-        };
-        let of_a = a.next_if(|x| x.0 == column).map_or(0.0, |x| x.1);
-        let of_b = b.next_if(|y| y.0 == column).map_or(0.0, |y| y.1);
-        let value = of_a - factor * of_b;
-        if value != 0.0 {
-            all.push((column, value));
-        }
-    }
+fn entry(v: &Row, column: usize) -> f64 {
+    v.get(&column).copied().unwrap_or(0.0)
 }
 
 #[cfg(test)]
@@ -430,9 +410,9 @@ mod tests {
                 values.iter().filter(|value| **value < ZERO).count()
             );
             for v in basis {
-                let size = max_abs(v.iter().map(|(_, x)| x));
+                let size = max_abs(v.values());
                 let mut whole = DVector::zeros(3 * bodies);
-                v.iter().for_each(|&(column, x)| whole[column] = x);
+                v.iter().for_each(|(&column, &x)| whole[column] = x);
                 let missed = (&dense * whole).amax();
                 assert!(missed < 1e-10 * size, "{missed} of {size}");
             }

@@ -10,7 +10,7 @@
 use crate::fem::pressure::Pressures;
 use crate::linalg::largest;
 use crate::model::{Body, BodyKind, Factor, Form};
-use crate::plane::max_abs;
+use crate::plane::{max_abs, range};
 use crate::{LinearisationPoint, Model};
 
 /// Round-off of an internal force or length, in units of the machine precision times the sum of its terms' magnitudes.
@@ -105,7 +105,7 @@ impl Sizes {
         if self.reference == 0.0 {
             let motions = at.u.iter().zip(&self.kind);
             let motions = motions.filter(|(_, kind)| **kind == BalancedQuantity::Force);
-            let largest = motions.fold(0.0_f64, |most, (u, _)| most.max(u.abs()));
+            let largest = max_abs(motions.map(|(u, _)| u));
             wanted = wanted.max(self.softest * largest);
         }
         wanted
@@ -169,17 +169,11 @@ fn coarse(size: f64) -> f64 {
 
 /// Largest magnitude of a load's factor over a path: at its corners, and at corners of the amplitude between them.
 fn peak(path: &[f64], scale: &Factor) -> f64 {
-    let (low, high) = path
-        .iter()
-        .fold((f64::INFINITY, -f64::INFINITY), |(l, h), &p| {
-            (l.min(p), h.max(p))
-        });
+    let [low, high] = range(path.iter().copied());
     let corners = path.iter().map(|&p| scale.at(p));
     let turns = scale.0.iter();
     let turns = turns.filter(|(at, _)| (low..=high).contains(at));
-    corners
-        .chain(turns.map(|(_, factor)| *factor))
-        .fold(0.0_f64, |most, factor| most.max(factor.abs()))
+    max_abs(corners.chain(turns.map(|(_, factor)| *factor)))
 }
 
 /// Quantity balanced by the equation of each degree of freedom.
@@ -212,7 +206,7 @@ fn softest_body(model: &Model) -> f64 {
         }
         BodyKind::Truss(truss) => truss.ea / model.length,
         BodyKind::Linear(linear) => {
-            let largest = linear.entries.iter().fold(0.0_f64, |m, e| m.max(e.2.abs()));
+            let largest = max_abs(linear.entries.iter().map(|(_, _, entry)| entry));
             match linear.form {
                 Form::Stiffness => largest,
                 Form::Compliance { .. } => 1.0 / largest,

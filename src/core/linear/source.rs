@@ -9,7 +9,7 @@ use crate::contact::state::{in_mode, largest_drift};
 use crate::interface::minor_history::Input;
 use crate::interface::rows;
 use crate::linalg::SolveError;
-use crate::model::{Axis, MonitorQuantity};
+use crate::model::{Axis, Contact, MonitorQuantity};
 use crate::plane::max_abs;
 use crate::{
     CondensedSystem, ContactState, Deformation, Finding, Friction, InterfaceProblem, JudgedLaw,
@@ -19,7 +19,7 @@ use crate::{
 use std::sync::Arc;
 
 /// Estimated norm of the scaled inverse from which on the equations are suspected to be singular.
-pub(super) const SUSPICIOUS: f64 = 1e12;
+const SUSPICIOUS: f64 = 1e12;
 /// Lower bound of the tolerance for relative violations of a law.
 const TOLERANCE: f64 = 1e-8;
 
@@ -66,6 +66,24 @@ pub struct LinearisationPoint<'a> {
 }
 
 impl LinearisationPoint<'_> {
+    /// The contacts of the interface problem, from the kinematics and the prescribed motion of each.
+    pub(super) fn nodes(
+        &self,
+        of: impl Fn(usize) -> (Option<NodeKinematics>, [f64; 2]),
+    ) -> Vec<ProblemNode> {
+        let node = |(slave, state): (usize, &ContactState)| {
+            let (kinematics, prescribed) = of(slave);
+            ProblemNode {
+                slave,
+                kinematics,
+                prescribed,
+                friction: state.friction(&self.friction[slave]),
+                state: *state,
+            }
+        };
+        self.contacts.iter().enumerate().map(node).collect()
+    }
+
     /// Norms of the largest out-of-balance force and its scale, before the interface conditions.
     pub fn norms(&self, force: f64, scale: f64) -> Norms {
         Norms {
@@ -151,6 +169,16 @@ pub enum SolveResult {
     NearlySingular,
     /// There is no solution, or it cannot be computed.
     Not,
+}
+
+impl SolveResult {
+    /// The result for an estimated norm of the scaled inverse.
+    pub(super) fn from_norm(norm: f64) -> SolveResult {
+        match norm > SUSPICIOUS {
+            true => SolveResult::NearlySingular,
+            false => SolveResult::Well,
+        }
+    }
 }
 
 /// The deformable part under the interface.
@@ -268,10 +296,7 @@ pub trait Source: Send {
         for k in 0..at.contacts.len() {
             condensed.read(k, [0.0; 2]);
         }
-        match norm > SUSPICIOUS {
-            true => SolveResult::NearlySingular,
-            false => SolveResult::Well,
-        }
+        SolveResult::from_norm(norm)
     }
 
     /// Change of the load factor in the last solve, if it is an unknown ([`LinearisationPoint::along`]).
@@ -300,19 +325,8 @@ pub trait Source: Send {
     fn problem(&mut self, at: &LinearisationPoint<'_>) -> Result<InterfaceProblem, SolveError> {
         let force = self.norms(at).scale;
         let condensed = self.condensed().ok_or(SolveError::Singular)?;
-        let nodes = at
-            .contacts
-            .iter()
-            .enumerate()
-            .map(|(k, state)| ProblemNode {
-                slave: k,
-                kinematics: self.kinematics(k),
-                prescribed: [0.0; 2],
-                friction: state.friction(&at.friction[k]),
-                state: *state,
-            });
         Ok(InterfaceProblem {
-            nodes: nodes.collect(),
+            nodes: at.nodes(|k| (self.kinematics(k), [0.0; 2])),
             relation: condensed.relation.clone(),
             force,
             length: self.length(),
@@ -415,8 +429,7 @@ pub trait Source: Send {
 
     /// Largest displacement between two states (length).
     fn moved(&self, u: &[f64], before: &[f64]) -> f64 {
-        let moved = u.iter().zip(before).map(|(u, before)| (u - before).abs());
-        moved.fold(0.0, f64::max)
+        max_abs(u.iter().zip(before).map(|(u, before)| u - before))
     }
 
     /// How far a contact slid since the last accepted state, along t (length). `None` if the source does not measure it; its slip
@@ -450,7 +463,7 @@ pub trait Source: Send {
                     numbers: JudgedNumbers {
                         gap: over.gap,
                         slip: -slip.unwrap_or(0.0),
-                        limit: at.friction[k].coefficient() * state.f_n + at.friction[k].cohesion,
+                        limit: at.friction[k].limit(state.f_n),
                         f_n: state.f_n,
                         f_t: state.f_t,
                         deviation: None,
@@ -506,7 +519,6 @@ pub trait Source: Send {
     /// Value of a monitor in the state of the last linearisation.
     fn monitor(&self, watched: &MonitorQuantity, at: &LinearisationPoint<'_>) -> f64 {
         match watched {
-            MonitorQuantity::Displacement { dof } => at.u[*dof],
             MonitorQuantity::Contact { slaves, axis } => {
                 let of = |&s: &usize| match axis {
                     Axis::X => -at.contacts[s].f_t,
@@ -514,14 +526,45 @@ pub trait Source: Send {
                 };
                 slaves.iter().map(of).sum()
             }
-            MonitorQuantity::Modes { slaves, mode } => in_mode(at.contacts, slaves, *mode),
-            MonitorQuantity::Drift { slaves } => largest_drift(at.contacts, slaves),
-            MonitorQuantity::Arc => at.arc,
-            MonitorQuantity::Pressure { .. }
-            | MonitorQuantity::Reported { .. }
-            | MonitorQuantity::Reaction { .. } => f64::NAN,
+            MonitorQuantity::Pressure { .. } => f64::NAN,
+            _ => value(watched, &[], at),
         }
     }
+}
+
+/// Value of a monitor that needs only displacements and contacts; not a number for the others.
+pub(super) fn value(
+    watched: &MonitorQuantity,
+    contacts: &[Contact],
+    at: &LinearisationPoint<'_>,
+) -> f64 {
+    match watched {
+        MonitorQuantity::Displacement { dof } => at.u[*dof],
+        MonitorQuantity::Contact { slaves, axis } => {
+            let k = if *axis == Axis::X { 0 } else { 1 };
+            slaves.iter().map(|&s| at.contacts[s].force()[k]).sum()
+        }
+        MonitorQuantity::Modes { slaves, mode } => in_mode(at.contacts, slaves, *mode),
+        MonitorQuantity::Drift { slaves } => largest_drift(at.contacts, slaves),
+        MonitorQuantity::Pressure { slaves, shear } => {
+            pressure(contacts, at.contacts, slaves, *shear)
+        }
+        MonitorQuantity::Arc => at.arc,
+        MonitorQuantity::Reported { .. } | MonitorQuantity::Reaction { .. } => f64::NAN,
+    }
+}
+
+/// Pressure or shear of the contact where its magnitude is largest.
+fn pressure(contacts: &[Contact], states: &[ContactState], slaves: &[usize], shear: bool) -> f64 {
+    let of = |&s: &usize| {
+        let both = contacts[s].pressure(states[s].f_n, states[s].f_t)?;
+        Some(both[usize::from(shear)])
+    };
+    let all = slaves.iter().filter_map(of);
+    all.fold(
+        0.0,
+        |most: f64, p| if p.abs() > most.abs() { p } else { most },
+    )
 }
 
 /// By how much a contact is against each law, relative to the scales; `slip` is what it has slipped in the increment, if it
@@ -538,7 +581,7 @@ fn against(
     if !pressed {
         return vec![(JudgedLaw::Penetration, (-gap / length).max(0.0))];
     }
-    let bound = friction.coefficient() * state.f_n + friction.cohesion;
+    let bound = friction.limit(state.f_n);
     let mut laws = vec![
         (JudgedLaw::Gap, gap.abs() / length),
         (JudgedLaw::Tension, (-state.f_n / force).max(0.0)),

@@ -15,8 +15,7 @@ use crate::contact::tracking::Ground;
 use crate::interface::blocks::Blocks;
 use crate::interface::rows;
 use crate::linalg::{DenseFactors, Factors, Pattern, SolveError, largest};
-use crate::linear::bodies::value;
-use crate::linear::source::SUSPICIOUS;
+use crate::linear::source::value;
 use crate::linear::sparse_contacts::sparse_contacts;
 use crate::linear::violation::violation;
 use crate::model::{Bond, Linear, MonitorQuantity};
@@ -105,9 +104,8 @@ impl SparseInterface {
     }
 
     fn place(&mut self, u: &[f64]) {
-        let nodes = self.model.nodes.iter().zip(&self.model.dofs.first);
-        for (position, (node, &first)) in self.positions.iter_mut().zip(nodes) {
-            *position = [node.at[0] + u[first], node.at[1] + u[first + 1]];
+        for (node, position) in self.positions.iter_mut().enumerate() {
+            *position = self.model.place(u, node);
         }
     }
 
@@ -245,15 +243,7 @@ impl SparseInterface {
 
     /// The contacts for searches.
     fn nodes(&self, at: &LinearisationPoint<'_>) -> Vec<ProblemNode> {
-        let nodes = at.contacts.iter().enumerate();
-        let node = |(slave, state): (usize, &ContactState)| ProblemNode {
-            slave,
-            kinematics: self.kinematics(slave),
-            prescribed: [0.0; 2],
-            friction: state.friction(&at.friction[slave]),
-            state: *state,
-        };
-        nodes.map(node).collect()
+        at.nodes(|contact| (self.kinematics(contact), [0.0; 2]))
     }
 }
 
@@ -380,10 +370,7 @@ impl Source for SparseInterface {
             self.finish();
             norm = inverse;
         }
-        match norm > SUSPICIOUS {
-            true => SolveResult::NearlySingular,
-            false => SolveResult::Well,
-        }
+        SolveResult::from_norm(norm)
     }
 
     fn increment(&self, contact: usize) -> NodeIncrement {
@@ -503,7 +490,7 @@ impl Source for SparseInterface {
 
     fn moved(&self, u: &[f64], before: &[f64]) -> f64 {
         let nodes = u.iter().zip(before).take(self.first_force);
-        nodes.fold(0.0, |most: f64, (u, before)| most.max((u - before).abs()))
+        max_abs(nodes.map(|(u, before)| u - before))
     }
 
     fn slid(&self, contact: usize, at: &LinearisationPoint<'_>) -> Option<f64> {

@@ -184,11 +184,7 @@ impl System {
     pub fn place(&mut self, model: &Model, u: &[f64]) {
         self.reach = 0.0;
         for (n, position) in self.positions.iter_mut().enumerate() {
-            let first = model.dofs.first[n];
-            *position = [
-                model.nodes[n].at[0] + u[first],
-                model.nodes[n].at[1] + u[first + 1],
-            ];
+            *position = model.place(u, n);
             self.reach = larger(self.reach, max_abs(*position));
         }
     }

@@ -8,9 +8,9 @@ use super::drag::stiffen;
 use super::sizes::{BalancedQuantity, Sizes};
 use super::source::LinearisationPoint;
 use super::stability::{Conditions, Dense, Stability, ZERO, sliding, smooth};
-use super::system::System;
+use super::system::{System, moved};
 use crate::contact::geometric_tangent::{Variation, geometric_tangent};
-use crate::fem::assembly::{Assembly, AssemblyMotion};
+use crate::fem::assembly::Assembly;
 use crate::linalg::{Pattern, SolveError, SymmetricFactors};
 use crate::model::{Body, BodyKind, Form};
 use crate::{ElementOutput, Mode, Model};
@@ -129,12 +129,7 @@ impl Tangent {
             values: &mut self.values,
             coupling: &mut coupling,
         };
-        let moved = AssemblyMotion {
-            u: at.u,
-            step: &step,
-            before: at.accepted.u,
-            history: at.accepted.history,
-        };
+        let moved = moved(at.u, &step, at);
         self.assembly.assemble(&model.dofs, moved, out);
         let diagonal = |e: usize| self.pattern.slot(e, e);
         stiffen(model, at, sizes, diagonal, &mut self.values);

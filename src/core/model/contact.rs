@@ -46,6 +46,11 @@ impl Surface {
             ..Surface::new(name, vec![nodes.to_vec()], true)
         }
     }
+
+    /// The nodes of its elements, in the order of the walk; a node between two elements is repeated.
+    pub fn nodes(&self) -> impl DoubleEndedIterator<Item = &usize> {
+        self.elements.iter().flatten()
+    }
 }
 
 /// Flexibilities of a shear-flexible beam element under point forces ([`crate::contact::point_force`]), with L its undeformed

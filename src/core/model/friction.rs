@@ -66,6 +66,11 @@ impl Friction {
         self.angle.to_radians().tan()
     }
 
+    /// The largest tangential force under a normal force.
+    pub fn limit(&self, f_n: f64) -> f64 {
+        self.coefficient() * f_n + self.cohesion
+    }
+
     /// Whether there is neither friction nor cohesion, so that no tangential force can arise.
     pub fn is_smooth(&self) -> bool {
         self.angle == 0.0 && self.cohesion == 0.0

@@ -74,7 +74,7 @@ impl ConeSolver {
         let next = self.sweep.assumed(slave).mode();
         let limit = match next {
             Mode::Free => 0.0,
-            _ => friction.coefficient() * f_n + friction.cohesion,
+            _ => friction.limit(f_n),
         };
         let slip = u_1.hypot(u_2);
         let mut record = ContactRecord {

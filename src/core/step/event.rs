@@ -256,6 +256,11 @@ impl Outcome {
         }
     }
 
+    /// Whether the increment is accepted.
+    pub fn is_accepted(&self) -> bool {
+        matches!(self, Outcome::Increment { .. })
+    }
+
     /// Whether a major iteration ends here, converged or not.
     pub fn ends_major(&self) -> bool {
         !matches!(

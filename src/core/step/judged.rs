@@ -4,6 +4,7 @@
 //! |T_max|, and friction that opposes the slip of a sliding node; in space, friction at its limit along the slip. Unreported
 //! quantities are not checked.
 
+use crate::plane::max_abs;
 use crate::{ContactRecord, Event, Finding, JudgedLaw, JudgedNumbers, Mode, Model, State, Verdict};
 
 /// Violations below this limit are accepted silently, relative to the largest force and the largest motion.
@@ -25,11 +26,8 @@ pub struct ReferenceSizes {
 
 /// The largest contact force in a state.
 pub fn largest_force(nodes: &[ContactRecord]) -> f64 {
-    nodes
-        .iter()
-        .flat_map(|node| [node.f_n, node.f_t])
-        .filter(|f| f.is_finite())
-        .fold(0.0, |most: f64, f| most.max(f.abs()))
+    let forces = nodes.iter().flat_map(|node| [node.f_n, node.f_t]);
+    max_abs(forces.filter(|f| f.is_finite()))
 }
 
 impl ReferenceSizes {

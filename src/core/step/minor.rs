@@ -6,6 +6,7 @@ use crate::interface::rows::carried;
 use crate::interface::t_max_iteration::{TMaxLimit, spiral};
 use crate::linear::sizes::ROUND_OFF;
 use crate::model::{self, AtCycle, AtLimit, SlipCount};
+use crate::plane::max_abs;
 use crate::step::iterate::Iterate;
 use crate::{
     ContactRecord, Cycle, Failure, Method, Mode, NodeIncrement, Outcome, Singular, SolveResult,
@@ -201,9 +202,8 @@ impl Iterate {
     /// Round-off of the slave nodes' positions relative to the scene's length. Far from the origin it sets the tolerance for ties
     /// between contact statuses.
     fn placed(&self) -> f64 {
-        let reach = (0..self.state.nodes.len())
-            .map(|contact| self.source.position(contact))
-            .fold(0.0_f64, |most, [x, y]| most.max(x.abs()).max(y.abs()));
+        let contacts = 0..self.state.nodes.len();
+        let reach = max_abs(contacts.flat_map(|contact| self.source.position(contact)));
         ROUND_OFF * f64::EPSILON * reach / self.model.length
     }
 

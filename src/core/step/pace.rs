@@ -11,6 +11,7 @@
 //! cannot confirm a jump, and the fastest previous increment is ignored: a node that starts to slide is not a jump.
 
 use crate::model::Factor;
+use crate::plane::max_abs;
 use crate::{Model, SubIncrement};
 use serde::{Deserialize, Serialize};
 
@@ -209,9 +210,7 @@ fn length([from, to]: [f64; 2]) -> f64 {
 fn peak(path: &[f64], scale: &Factor) -> f64 {
     let points = scale.0.iter().map(|point| point.1);
     let corners = path.iter().map(|&at| scale.at(at));
-    points
-        .chain(corners)
-        .fold(0.0, |most: f64, x| most.max(x.abs()))
+    max_abs(points.chain(corners))
 }
 
 #[cfg(test)]

@@ -491,82 +491,51 @@ struct SerializedState {
     status: Status,
 }
 
-impl From<State> for SerializedState {
-    fn from(state: State) -> Self {
-        let (major, attempt) = (state.major, state.attempt);
-        let (recovery, record) = (state.recovery, state.record);
-        SerializedState {
-            next: state.next,
-            load_factor: state.load_factor,
-            u: state.u,
-            nodes: state.nodes,
-            start: state.start,
-            controls: state.controls,
-            trail: major.minor_history,
-            rounds: attempt.major_history,
-            line: major.line,
-            aim: major.target,
-            reached: major.last_target,
-            search: attempt.search,
-            piece: state.sub_increment,
-            cuts: recovery.cuts,
-            minors: attempt.minors,
-            unsettled: attempt.unsettled,
-            net: attempt.net,
-            correction: major.correction,
-            factored: major.factored,
-            pace: record.pace,
-            watch: record.watch,
-            brake: recovery.brake,
-            way: state.way,
-            motion: recovery.motion,
-            detour: recovery.fallback,
-            searched: record.searched,
-            outside: state.outside,
-            status: state.status,
+/// Converts both ways between two records of the same values.
+macro_rules! interchangeable {
+    ($one:ident $fields:tt, $other:ident $places:tt) => {
+        impl From<$one> for $other {
+            fn from(from: $one) -> $other {
+                let $one $fields = from;
+                $other $places
+            }
         }
-    }
+
+        impl From<$other> for $one {
+            fn from(from: $other) -> $one {
+                let $other $places = from;
+                $one $fields
+            }
+        }
+    };
 }
 
-impl From<SerializedState> for State {
-    fn from(state: SerializedState) -> Self {
-        State {
-            next: state.next,
-            load_factor: state.load_factor,
-            u: state.u,
-            nodes: state.nodes,
-            start: state.start,
-            controls: state.controls,
-            sub_increment: state.piece,
-            major: MajorState {
-                minor_history: state.trail,
-                line: state.line,
-                target: state.aim,
-                last_target: state.reached,
-                correction: state.correction,
-                factored: state.factored,
-            },
-            attempt: AttemptState {
-                major_history: state.rounds,
-                search: state.search,
-                minors: state.minors,
-                unsettled: state.unsettled,
-                net: state.net,
-            },
-            recovery: RecoveryState {
-                cuts: state.cuts,
-                brake: state.brake,
-                motion: state.motion,
-                fallback: state.detour,
-            },
-            record: RunRecord {
-                pace: state.pace,
-                watch: state.watch,
-                searched: state.searched,
-            },
-            way: state.way,
-            outside: state.outside,
-            status: state.status,
-        }
+interchangeable! {
+    SerializedState {
+        next, load_factor, u, nodes, start, controls, trail, rounds, line, aim, reached, search, piece, cuts, minors, unsettled,
+        net, correction, factored, pace, watch, brake, way, motion, detour, searched, outside, status,
+    },
+    State {
+        next,
+        load_factor,
+        u,
+        nodes,
+        start,
+        controls,
+        sub_increment: piece,
+        major: MajorState {
+            minor_history: trail,
+            line,
+            target: aim,
+            last_target: reached,
+            correction,
+            factored,
+        },
+        attempt: AttemptState { major_history: rounds, search, minors, unsettled, net },
+        recovery: RecoveryState { cuts, brake, motion, fallback: detour },
+        record: RunRecord { pace, watch, searched },
+        way,
+        outside,
+        status,
     }
 }

@@ -41,7 +41,7 @@ impl Method for Newton {
         let before = numbers.mode;
         let pressure = numbers.f_n - stiffness * numbers.gap;
         let drag = numbers.f_t + stiffness * known.slip;
-        let limit = friction.coefficient() * pressure + friction.cohesion;
+        let limit = friction.limit(pressure);
         // A tie keeps the current mode.
         let tie = if ties.keep { ties.force } else { 0.0 };
         let opens = pressure <= if before == Mode::Free { tie } else { -tie };

@@ -7,6 +7,7 @@
 
 use stickslip_core::contact::closest_points::place;
 use stickslip_core::fem::deformation::deformation;
+use stickslip_core::groups::distinct;
 use stickslip_core::plane::depth_inside;
 use stickslip_core::step::judged::{self, ReferenceSizes};
 use stickslip_core::{
@@ -104,7 +105,7 @@ impl Audit {
     /// checked.
     pub fn take_reported(&mut self, solver: &dyn Solver) {
         let (event, state) = (solver.event(), solver.state());
-        if matches!(event.outcome, Outcome::Increment { .. }) {
+        if event.outcome.is_accepted() {
             let sizes = ReferenceSizes::from_state(state, event);
             let verdict = judged::verdict(solver.model(), &event.nodes, &sizes);
             self.add(event, &verdict, false);
@@ -168,14 +169,12 @@ fn deepest(model: &Model, u: &[f64]) -> Option<PenetratingMaster> {
             .iter()
             .filter(|s| body.nodes.contains(&s.node))
             .collect();
-        let mut masters: Vec<usize> = slaves
+        let masters = slaves
             .iter()
             .flat_map(|slave| &slave.surfaces)
-            .flat_map(|&surface| model.surfaces[surface].elements.iter().flatten().copied())
-            .filter(|node| !body.nodes.contains(node))
-            .collect();
-        masters.sort_unstable();
-        masters.dedup();
+            .flat_map(|&surface| model.surfaces[surface].nodes().copied())
+            .filter(|node| !body.nodes.contains(node));
+        let masters = distinct(masters);
         if masters.is_empty() {
             continue;
         }

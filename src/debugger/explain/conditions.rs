@@ -2,6 +2,7 @@
 
 use super::outline::Point;
 use std::collections::{BTreeMap, BTreeSet};
+use stickslip_core::groups::distinct;
 use stickslip_core::model::Factor;
 use stickslip_core::plane::{dot, minus};
 use stickslip_core::{Component, Model};
@@ -138,14 +139,8 @@ fn scaled(mut arrows: Vec<ConditionArrow>) -> Vec<ConditionArrow> {
 
 /// Nodes of bodies with restrained components.
 pub fn supports(model: &Model) -> Vec<Support> {
-    let mut nodes: Vec<usize> = model
-        .bodies
-        .iter()
-        .filter(|body| !body.is_linear())
-        .flat_map(|body| body.nodes.iter().copied())
-        .collect();
-    nodes.sort_unstable();
-    nodes.dedup();
+    let bodies = model.bodies.iter().filter(|body| !body.is_linear());
+    let nodes = distinct(bodies.flat_map(|body| body.nodes.iter().copied()));
     let moved: BTreeSet<usize> = model.prescribed.iter().map(|one| one.dof).collect();
     let held = |node: usize, component| {
         let dof = model.dofs.dof(node, component);

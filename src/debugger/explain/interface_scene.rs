@@ -13,7 +13,7 @@ use stickslip_scene::{Scene, SceneError, limits};
 pub fn problem(model: &Model, state: &State, posed: &ReportedProblem) -> Problem {
     let contacts = posed.contacts.iter().enumerate().map(|(place, &slave)| {
         let (node, friction) = (&state.nodes[slave], posed.friction[place]);
-        let bound = friction.coefficient() * node.f_n + friction.cohesion;
+        let bound = friction.limit(node.f_n);
         let sign = if node.f_t < 0.0 { -1.0 } else { 1.0 };
         let t_max = match node.mode {
             Mode::Sliding if node.t_max.is_finite() && node.t_max != 0.0 => node.t_max,

@@ -375,7 +375,7 @@ fn resistance(moving: &BodyMotion<'_>, state: &State) -> Resistance {
             continue;
         }
         let friction = node.friction(&state.controls.friction[contact]);
-        let most = friction.coefficient() * node.f_n.max(0.0) + friction.cohesion;
+        let most = friction.limit(node.f_n.max(0.0));
         let size = v_n.hypot(v_t);
         if v_t.abs() > LEFT * size {
             all.friction[0] += most * v_t.abs();

@@ -162,11 +162,7 @@ pub fn extent(
     }
     let reach = 0.2 * bodies.diagonal();
     let mut all = bodies;
-    for node in model
-        .surfaces
-        .iter()
-        .flat_map(|surface| surface.elements.iter().flatten())
-    {
+    for node in model.surfaces.iter().flat_map(|surface| surface.nodes()) {
         let at = place(*node);
         let clamped =
             |axis: usize| at[axis].clamp(bodies.low[axis] - reach, bodies.high[axis] + reach);

@@ -264,7 +264,7 @@ pub fn attempt_within(
         let event = solver.event();
         let ends = event.outcome.ends_major();
         trial.majors += u32::from(ends);
-        let is_accepted = matches!(event.outcome, Outcome::Increment { .. });
+        let is_accepted = event.outcome.is_accepted();
         let is_there = is_accepted && target.is_passed(solver.state());
         let mut changes = Vec::new();
         if let Some(stepper) = solver.stepper() {

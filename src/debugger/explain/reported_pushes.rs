@@ -160,7 +160,7 @@ impl ReportedPushes {
         let most = SAME * self.forces.amax();
         (0..self.modes.len()).all(|place| {
             let (friction, force) = (posed.friction[place], self.increment(place).force);
-            let bound = friction.coefficient() * force[0] + friction.cohesion;
+            let bound = friction.limit(force[0]);
             self.modes[place] != Mode::Sliding || (force[1].abs() - bound).abs() <= most
         })
     }

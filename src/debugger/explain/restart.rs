@@ -7,7 +7,7 @@ use std::sync::Arc;
 use stickslip_core::model::MonitorQuantity;
 use stickslip_core::plane::distance;
 use stickslip_core::{
-    Failure, Intervention, JudgedLaw, Model, Outcome, RunEnd, State, Status, Stepper, Until,
+    Failure, Intervention, JudgedLaw, Model, RunEnd, State, Status, Stepper, Until,
 };
 use stickslip_scene::format::paths;
 use stickslip_scene::{Scene, Spec};
@@ -200,7 +200,7 @@ pub fn restart(
         minors += 1;
         let outcome = &stepper.event().outcome;
         majors += u64::from(outcome.ends_major());
-        let accepted = matches!(outcome, Outcome::Increment { .. });
+        let accepted = outcome.is_accepted();
         if accepted && target.is_passed(stepper.state()) {
             ControlFlow::Break(TrialEnd::Converged)
         } else {

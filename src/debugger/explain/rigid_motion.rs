@@ -194,7 +194,7 @@ impl<'a> BodyMotion<'a> {
         let masters: Vec<bool> = model
             .surfaces
             .iter()
-            .map(|surface| surface.elements.iter().flatten().any(|&n| self.has(n)))
+            .map(|surface| surface.nodes().any(|&n| self.has(n)))
             .collect();
         (0..model.contacts.len()).filter(move |&s| {
             let contact = &model.contacts[s];

@@ -7,6 +7,7 @@
 use super::majors::slope;
 use super::names;
 use std::ops::ControlFlow;
+use stickslip_core::groups::distinct;
 use stickslip_core::plane::{cross, dot, minus, unit};
 use stickslip_core::{
     Intervention, Mode, Model, NodeKinematics, Outcome, RunEnd, SearchMode, Settings, State,
@@ -41,10 +42,7 @@ struct NearEnd {
 /// The surfaces behind whose end a slave node is in the last equilibrium, or at whose end it slides there.
 pub fn ending(model: &Model, state: &State) -> Vec<usize> {
     let found = near_ends(model, state);
-    let mut surfaces: Vec<usize> = found.iter().map(|found| found.surface).collect();
-    surfaces.sort_unstable();
-    surfaces.dedup();
-    surfaces
+    distinct(found.iter().map(|found| found.surface))
 }
 
 /// Describes the node whose way around or off the end of its surface ends the path, and whether it then is inside the body. `None`

@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 use stickslip_core::contact::record::ContactRecord;
+use stickslip_core::groups::distinct;
 use stickslip_core::model::{BodyKind, diagonal};
 use stickslip_core::{Body, Event, IncrementStart, Model, Outcome};
 use stickslip_scene::{overlaps, shortest, sig4};
@@ -191,21 +192,17 @@ fn free_bodies(model: &Model) -> Vec<FreeBody> {
         !resists_strains || !body.nodes.iter().all(|&node| is_free(node))
     };
     let mut held: Vec<bool> = model.bodies.iter().map(is_held).collect();
-    let distinct = |nodes: &mut dyn Iterator<Item = usize>| {
-        let bodies = nodes.map(|node| owner[node]).filter(|&b| b != NO_OWNER);
-        let mut bodies: Vec<usize> = bodies.collect();
-        bodies.sort_unstable();
-        bodies.dedup();
-        bodies
+    let bodies_of = |nodes: &mut dyn Iterator<Item = usize>| {
+        distinct(nodes.map(|node| owner[node]).filter(|&b| b != NO_OWNER))
     };
     let surfaces = model.surfaces.iter();
     let under: Vec<Vec<usize>> = surfaces
-        .map(|surface| distinct(&mut surface.elements.iter().flatten().copied()))
+        .map(|surface| bodies_of(&mut surface.nodes().copied()))
         .collect();
     let mut contacts: Vec<Vec<usize>> = vec![Vec::new(); model.bodies.len()];
     for (number, contact) in model.contacts.iter().enumerate() {
         let masters = contact.surfaces.iter().flat_map(|&surface| &under[surface]);
-        let slaves = distinct(&mut contact.carriers().map(|(node, _)| node));
+        let slaves = bodies_of(&mut contact.carriers().map(|(node, _)| node));
         for &body in masters.chain(&slaves) {
             held[body] |= contact.bond.is_tied();
             if contacts[body].last() != Some(&number) {

@@ -7,6 +7,7 @@
 use super::interface_scene;
 use std::sync::Arc;
 use stickslip_core::model::SlipCount;
+use stickslip_core::plane::max_abs;
 use stickslip_core::strategy::method;
 use stickslip_core::{
     BoundUpdate, Event, InterfaceProblem, Mode, Model, Position, ReportedProblem, Settings, State,
@@ -182,8 +183,7 @@ fn reproduced(
     };
     let mut nodes = problem.states();
     let reported = iterations.iter().flat_map(|event| &event.nodes);
-    let forces = reported.flat_map(|record| [record.f_n.abs(), record.f_t.abs()]);
-    let tolerance = SAME * forces.fold(0.0, f64::max);
+    let tolerance = SAME * max_abs(reported.flat_map(|record| [record.f_n, record.f_t]));
     let mut is_same = |event: &Arc<Event>| {
         let found = trials.minor(&mut nodes, method(problem.settings.strategy));
         let Some((records, _)) = found else {

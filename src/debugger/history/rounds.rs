@@ -11,6 +11,7 @@ use crate::explain::names;
 use std::collections::VecDeque;
 use stickslip_core::contact::record;
 use stickslip_core::interface::cycle;
+use stickslip_core::plane::max_abs;
 use stickslip_core::{Mode, Model, counted};
 use stickslip_scene::joined;
 
@@ -132,10 +133,8 @@ pub fn rounds(strips: &[Strip]) -> Option<Rounds> {
             && (1..period).any(|back| !same(0, back) || !same(1, back + 1))
     };
     let margin = |back: usize, slave: usize| f64::from(tail[back - 1].1.margin(slave));
-    let largest = (0..nodes)
-        .map(|slave| margin(1, slave).abs())
-        .filter(|size| size.is_finite())
-        .fold(0.0, f64::max);
+    let margins = (0..nodes).map(|slave| margin(1, slave));
+    let largest = max_abs(margins.filter(|margin| margin.is_finite()));
     let near = |slave: usize, a: usize, b: usize, limit: f64| {
         let [a, b] = [a, b].map(|back| margin(back, slave));
         a == b || (a - b).abs() <= limit * a.abs().max(b.abs()).max(NO_MARGIN * largest)

@@ -11,6 +11,7 @@ use serde::de::value::{Error as NoName, StrDeserializer};
 use std::sync::Arc;
 use stickslip_core::contact::table2::{Entry, decide};
 use stickslip_core::interface::method::NodeContext;
+use stickslip_core::plane::max_abs;
 use stickslip_core::step::event::{Frame, Words};
 use stickslip_core::step::judged::{self, ReferenceSizes};
 use stickslip_core::strategy::method;
@@ -249,12 +250,9 @@ impl WireFrame<'_> {
 
     /// Tolerances for ties, relative to the forces.
     fn ties(&self, sent: &message::State) -> Ties {
-        let largest = sent
-            .contacts
-            .iter()
-            .flat_map(|found| [found.f_n, found.f_t.map(|f| f.size())])
-            .flatten()
-            .fold(0.0, |most: f64, f| most.max(f.abs()));
+        let found = sent.contacts.iter();
+        let forces = found.flat_map(|found| [found.f_n, found.f_t.map(|f| f.size())]);
+        let largest = max_abs(forces.flatten());
         Ties {
             force: TIE * largest,
             length: TIE * self.model.length,
@@ -374,10 +372,8 @@ impl WireFrame<'_> {
 
 /// The largest displacement (length); 0 if none are reported.
 fn largest(displacements: Option<&[Components]>) -> f64 {
-    displacements
-        .unwrap_or_default()
-        .iter()
-        .fold(0.0, |most: f64, moved| most.max(moved.size()))
+    let displacements = displacements.unwrap_or_default().iter();
+    max_abs(displacements.map(Components::size))
 }
 
 /// The signed component along t; in space the length of the vector.

@@ -437,7 +437,7 @@ impl Timeline {
             _ => doubt,
         };
         // Changes before an increment was accepted are over.
-        let accepted = |event: &Arc<Event>| matches!(event.outcome, Outcome::Increment { .. });
+        let accepted = |event: &Arc<Event>| event.outcome.is_accepted();
         let is_over = what.is_none() && frame.event.as_ref().is_some_and(accepted);
         let found = rounds(&self.strips()[..=self.cursor]).filter(|_| !is_over);
         let place = found.map(|found| rounds::words(self.model(), &found, true));

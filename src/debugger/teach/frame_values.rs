@@ -261,7 +261,7 @@ impl FrameValues {
                 .intervene(&Intervention::Increment(size))
                 .map_err(|_| Refusal::new(DONE))?;
             let end = stepper.drive(Until::end().minors(ENDLESS.into()), |stepper| {
-                if !matches!(stepper.event().outcome, Outcome::Increment { .. }) {
+                if !stepper.event().outcome.is_accepted() {
                     return ControlFlow::Continue(());
                 }
                 let accepted = stepper.state();

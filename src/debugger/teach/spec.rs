@@ -131,32 +131,21 @@ pub enum StepSpec {
     },
 }
 
-/// What a task can exclude.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Aid {
-    /// The strategy `ladder`.
-    Ladder,
-    /// Forced modes, and starts from a consistent state.
-    Force,
-    /// Another friction or cohesion.
-    Friction,
-    /// Another size of the increment.
-    Increment,
-    /// Any other change of the settings.
-    Settings,
-}
-
-impl Aid {
-    /// The aid in words.
-    pub fn words(self) -> &'static str {
-        match self {
-            Aid::Ladder => "the strategy ladder",
-            Aid::Force => "forced modes",
-            Aid::Friction => "another friction",
-            Aid::Increment => "another increment size",
-            Aid::Settings => "other settings",
-        }
+stickslip_core::words! {
+    /// What a task can exclude.
+    #[derive(Deserialize)]
+    #[serde(rename_all = "snake_case")]
+    pub enum Aid, words {
+        /// The strategy `ladder`.
+        Ladder "the strategy ladder",
+        /// Forced modes, and starts from a consistent state.
+        Force "forced modes",
+        /// Another friction or cohesion.
+        Friction "another friction",
+        /// Another size of the increment.
+        Increment "another increment size",
+        /// Any other change of the settings.
+        Settings "other settings",
     }
 }
 

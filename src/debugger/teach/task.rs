@@ -5,7 +5,7 @@ use super::quantity::Template;
 use super::spec::Aid;
 use crate::Frame;
 use crate::action::Action;
-use stickslip_core::{Intervention, Outcome, Status, Strategy};
+use stickslip_core::{Intervention, Status, Strategy};
 use stickslip_scene::{joined, shortest};
 
 /// Relative difference of load factors that counts as none.
@@ -92,7 +92,7 @@ impl Goal {
                 let accepted = frame
                     .event
                     .as_ref()
-                    .is_some_and(|event| matches!(event.outcome, Outcome::Increment { .. }));
+                    .is_some_and(|event| event.outcome.is_accepted());
                 let reached = frame.state.start.load_factor;
                 accepted && (reached - load).abs() <= SAME_LOAD * load.abs().max(1.0)
             }

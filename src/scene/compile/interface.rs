@@ -146,7 +146,7 @@ pub(super) fn smoothed(spec: &Spec, names: &Names, surfaces: &mut Surfaces) -> R
         if wanted.endless {
             return fault("an endless surface is already smooth; leave smooth out");
         }
-        let distinct: HashSet<usize> = surface.elements.iter().flatten().copied().collect();
+        let distinct: HashSet<usize> = surface.nodes().copied().collect();
         if closed(surface) && distinct.len() < 3 {
             return fault("a smooth closed surface needs at least three nodes");
         }
@@ -167,7 +167,7 @@ pub(super) fn slaves(
     friction(&at!["friction"], &spec.friction)?;
     let members: Vec<HashSet<usize>> = surfaces
         .iter()
-        .map(|surface| surface.elements.iter().flatten().copied().collect())
+        .map(|surface| surface.nodes().copied().collect())
         .collect();
     let (mut made, mut pairs) = (Vec::new(), Vec::new());
     let mut taken = HashSet::new();
@@ -354,7 +354,7 @@ pub(super) fn check_use(
     let mut used = on_body.to_vec();
     surfaces
         .iter()
-        .flat_map(|s| s.elements.iter().flatten())
+        .flat_map(|s| s.nodes())
         .for_each(|&n| used[n] = true);
     slaves.iter().for_each(|s| used[s.node] = true);
     for entry in names.entries() {
@@ -391,11 +391,8 @@ fn is_side(spec: &Spec, id: &str) -> bool {
 /// If an endless surface is not rigid.
 pub(super) fn find_rigid(dofs: &Dofs, surfaces: &mut Surfaces) -> Result<(), Fault> {
     for (surface, &k) in surfaces.made.iter_mut().zip(&surfaces.listed) {
-        surface.rigid = surface
-            .elements
-            .iter()
-            .flatten()
-            .all(|&n| !can_move(dofs, n));
+        let rigid = surface.nodes().all(|&n| !can_move(dofs, n));
+        surface.rigid = rigid;
         if surface.endless && !surface.rigid {
             bail!(
                 at!["surfaces", k, "endless"],

@@ -156,7 +156,7 @@ pub(super) fn stand_upright(dofs: &Dofs, surfaces: &[Surface], slaves: &mut [Con
         let nodes: Vec<usize> = slave
             .surfaces
             .iter()
-            .flat_map(|&s| surfaces[s].elements.iter().flatten())
+            .flat_map(|&s| surfaces[s].nodes())
             .copied()
             .chain([slave.node])
             .collect();

@@ -26,11 +26,11 @@ use super::limits;
 use super::nodes::Names;
 use crate::Spec;
 use crate::format::error::{Fault, at, bail};
-use crate::groups::marked;
 pub use history::increments;
 use layout::Layout;
 pub(crate) use layout::Loads;
 pub(crate) use renewed::{Choices, Compiled, Groups, renewed};
+use stickslip_core::groups::marked;
 use stickslip_core::model::diagonal;
 use stickslip_core::{Estimate, InitialGaps, Model};
 

@@ -2,9 +2,11 @@
 
 use super::super::nodes::Names;
 use super::tractions;
+use crate::areas::sides;
 use crate::format::error::{AtPath, Fault, Path, bail};
 use std::collections::{BTreeMap, HashMap, HashSet};
 use stickslip_core::model::{Body, Elastic, Plane, PressedFace, Update};
+use stickslip_core::plane::plus;
 
 /// Faces under pressure of bodies with large displacements, and of those with small ones.
 #[derive(Default)]
@@ -31,7 +33,7 @@ pub(super) fn faces(
             let own: HashSet<usize> = element.iter().copied().collect();
             face.len() == element.len() && face.iter().all(|node| own.contains(node))
         };
-        let Some((nodes, elastic)) = found.filter(|(nodes, _)| inner(nodes)) else {
+        let Some(&(nodes, elastic)) = found.filter(|(nodes, _)| inner(nodes)) else {
             let name = |node: Option<&usize>| node.map_or("", |&n| names.nodes[n].name.as_str());
             bail!(
                 here,
@@ -41,7 +43,7 @@ pub(super) fn faces(
             );
         };
         let face = PressedFace {
-            nodes: nodes.clone(),
+            nodes: nodes.to_vec(),
             thickness: (elastic.plane != Plane::Axisymmetric).then_some(elastic.thickness),
         };
         match elastic.update {
@@ -57,23 +59,12 @@ fn ends(face: &[usize]) -> Option<(usize, usize)> {
 }
 
 /// The outer faces of all solids by their end nodes, with their materials.
-fn outer_faces(bodies: &[Body]) -> HashMap<(usize, usize), (Vec<usize>, Elastic)> {
-    let mut outer = HashMap::new();
-    for solid in bodies.iter().filter_map(Body::solid) {
-        let edges: HashSet<&Vec<usize>> = solid.edges.iter().collect();
-        for element in &solid.elements {
-            for face in element
-                .kind
-                .faces_of(&element.nodes)
-                .filter(|face| edges.contains(face))
-            {
-                if let Some(ends) = ends(&face) {
-                    outer.insert(ends, (face, solid.materials[element.material]));
-                }
-            }
-        }
-    }
-    outer
+fn outer_faces(bodies: &[Body]) -> HashMap<(usize, usize), (&[usize], &Elastic)> {
+    let solids = bodies.iter().filter(|body| body.solid().is_some());
+    solids
+        .flat_map(sides)
+        .filter_map(|side| Some((ends(side.nodes)?, (side.nodes, side.made_of?))))
+        .collect()
 }
 
 /// Nodal forces of a pressure on undeformed faces.
@@ -88,7 +79,7 @@ pub(super) fn dead(names: &Names, faces: &[PressedFace], value: f64) -> Vec<(usi
         };
         for (node, force) in tractions::on_nodes(names, &face.nodes, &load) {
             let sum = sums.entry(node).or_insert([0.0; 2]);
-            *sum = [sum[0] + force[0], sum[1] + force[1]];
+            *sum = plus(*sum, force);
         }
     }
     sums.into_iter().collect()

@@ -10,7 +10,7 @@ use crate::Spec;
 use crate::format::error::{Path, Step};
 use crate::format::paths::ScalarPath;
 use crate::format::spec::SlaveSpec;
-use crate::groups::marked;
+use stickslip_core::groups::marked;
 use stickslip_core::{Control, Estimate, Model};
 
 /// Settings that are used outside the solver too: they move nodes, create surfaces, or make the scene invalid.

@@ -7,6 +7,7 @@ use super::super::nodes::Names;
 use crate::format::error::{AtPath, Fault, Path};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
+use stickslip_core::plane::plus;
 
 /// A uniform load per undeformed length, or in axisymmetry per undeformed area.
 pub(super) struct Load<'a> {
@@ -38,7 +39,7 @@ pub(super) fn forces(
     for element in chain.elements() {
         for (node, force) in on_nodes(names, &element, load) {
             let sum = forces.entry(node).or_insert([0.0; 2]);
-            *sum = [sum[0] + force[0], sum[1] + force[1]];
+            *sum = plus(*sum, force);
         }
     }
     Ok(forces.into_iter().collect())

@@ -5,9 +5,9 @@ use crate::format::error::at;
 use crate::format::error::bail;
 use crate::format::given::Cells;
 use crate::format::spec::{BodySpec, Material, Nodes};
-use crate::groups::Connected;
 use crate::import::element_kind;
 use std::collections::BTreeMap;
+use stickslip_core::groups::Connected;
 use stickslip_core::{ElementKind, Law, Plane, Update};
 use stickslip_exchange::inp::deck::{Element, ElementType, Family, Form, Section};
 use stickslip_exchange::mesh::CellKind;
@@ -76,12 +76,7 @@ impl DeckObjects<'_> {
                 .enumerate()
                 .filter(|(_, e)| e.kind.family != Family::Beam)
         };
-        for (_, element) in solids() {
-            element
-                .nodes
-                .windows(2)
-                .for_each(|pair| groups.join(pair[0], pair[1]));
-        }
+        solids().for_each(|(_, element)| groups.join_all(&element.nodes));
         let mut parts: BTreeMap<Part, Vec<usize>> = BTreeMap::new();
         for (k, element) in solids() {
             let part = (

@@ -7,9 +7,9 @@ use crate::format::error::at;
 use crate::format::error::bail;
 use crate::format::given::SideSet;
 use crate::format::spec::{Nodes, SlaveSpec, SurfaceSpec};
-use crate::groups::Connected;
 use crate::number::sig4;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
+use stickslip_core::groups::Connected;
 use stickslip_core::model::{InitialGaps, SlavePoints};
 use stickslip_core::plane::{distance, distance_to_segment, range};
 use stickslip_exchange::inp::DeckLocation;
@@ -264,28 +264,22 @@ impl DeckObjects<'_> {
         place: DeckLocation,
     ) -> Vec<String> {
         let sides = self.node_lists(sides);
-        let mut number = HashMap::new();
-        for node in sides.iter().flatten() {
-            let next = number.len();
-            number.entry(*node).or_insert(next);
-        }
-        let mut groups = Connected::new(number.len());
-        for side in &sides {
-            side.windows(2)
-                .for_each(|pair| groups.join(number[&pair[0]], number[&pair[1]]));
-        }
-        let mut pieces: BTreeMap<usize, Vec<Vec<usize>>> = BTreeMap::new();
+        let mut groups = Connected::new(self.deck.nodes.len());
+        sides.iter().for_each(|side| groups.join_all(side));
+        // By the first of their sides.
+        let mut pieces: Vec<(usize, Vec<Vec<usize>>)> = Vec::new();
         for side in sides {
+            let root = groups.root(side[0]);
             let labels = side
                 .iter()
-                .map(|&node| self.deck.nodes[node].label as usize)
-                .collect();
-            pieces
-                .entry(groups.root(number[&side[0]]))
-                .or_default()
-                .push(labels);
+                .map(|&node| self.deck.nodes[node].label as usize);
+            let labels = labels.collect();
+            match pieces.iter_mut().find(|(of, _)| *of == root) {
+                Some((_, piece)) => piece.push(labels),
+                None => pieces.push((root, vec![labels])),
+            }
         }
-        let enter = |sides: Vec<Vec<usize>>| {
+        let enter = |(_, sides): (usize, Vec<Vec<usize>>)| {
             let name = self.free.take(name);
             if let Some(Nodes::Given { sides: sets, .. }) = self.spec.nodes.first_mut() {
                 self.origin
@@ -297,7 +291,7 @@ impl DeckObjects<'_> {
             }
             name
         };
-        pieces.into_values().map(enter).collect()
+        pieces.into_iter().map(enter).collect()
     }
 
     /// Slave nodes grouped by candidate surfaces and law.

@@ -6,8 +6,8 @@ use crate::format::error::at;
 use crate::format::error::bail;
 use crate::format::given::NodeSet;
 use crate::format::spec::{LoadSpec, MonitorSpec, Nodes, Quantity, SupportSpec};
-use crate::groups::marked;
 use std::collections::{BTreeMap, HashMap};
+use stickslip_core::groups::{distinct, marked};
 use stickslip_core::model::{Axis, Component};
 use stickslip_exchange::inp::DeckLocation;
 use stickslip_exchange::inp::deck::{Direction, Family, Step, Value, Volume};
@@ -553,14 +553,9 @@ impl DeckObjects<'_> {
     /// Monitors for the displacements of printed nodes and for the contact force.
     fn monitors(&mut self) {
         let deck = self.deck;
-        let mut nodes: Vec<usize> = Vec::new();
-        for &set in &deck.printed {
-            let members = deck.node_sets[set].members.iter();
-            nodes.extend(members.filter(|&&node| self.used[node]));
-        }
-        nodes.sort_unstable();
-        nodes.dedup();
-        for node in nodes {
+        let sets = deck.printed.iter().map(|&set| &deck.node_sets[set]);
+        let printed = sets.flat_map(|set| set.members.iter().copied());
+        for node in distinct(printed.filter(|&node| self.used[node])) {
             for component in [Component::X, Component::Y] {
                 self.spec.monitors.push(MonitorSpec {
                     name: format!("u_{component} {}", deck.nodes[node].label),

@@ -18,8 +18,8 @@ mod loads;
 mod tests;
 
 use crate::format::error::{self, Path, Step, at};
-use crate::groups::marked;
 use crate::{SceneError, Spec};
+use stickslip_core::groups::marked;
 
 use crate::shown::cut;
 use std::collections::HashSet;

@@ -22,6 +22,7 @@ use super::spec::{BodySpec, History, LoadSpec, Nodes, SlaveSpec, Spec, SurfaceSp
 use crate::joined;
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize};
+use stickslip_core::plane::max_abs;
 use stickslip_core::{Friction, InitialState, Mode, Settings};
 use stickslip_exchange::problem;
 
@@ -274,13 +275,8 @@ impl Problem {
         if let Some(spacing) = self.spacing {
             return spacing;
         }
-        let most = self
-            .contacts
-            .iter()
-            .map(|contact| contact.gap)
-            .chain(self.free.iter().copied())
-            .map(f64::abs)
-            .fold(0.0, f64::max);
+        let gaps = self.contacts.iter().map(|contact| contact.gap);
+        let most = max_abs(gaps.chain(self.free.iter().copied()));
         if most > 0.0 { most } else { 1.0 }
     }
 

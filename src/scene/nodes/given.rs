@@ -11,6 +11,7 @@ use crate::format::given::{Cells, NodeSet, SideSet};
 use crate::format::spec::Nodes;
 use std::collections::HashMap;
 use stickslip_core::Node;
+use stickslip_core::groups::distinct;
 
 impl Names {
     /// Adds a mesh given node by node: the whole mesh, then its parts, sets and sides.
@@ -152,10 +153,7 @@ fn place(here: &Path, lists: &[Cells], mut k: usize) -> Path {
 
 /// The distinct nodes of elements, ascending.
 pub(super) fn nodes_of(elements: &[Element]) -> Vec<usize> {
-    let mut nodes: Vec<usize> = elements.iter().flat_map(|(_, own)| own).copied().collect();
-    nodes.sort_unstable();
-    nodes.dedup();
-    nodes
+    distinct(elements.iter().flat_map(|(_, own)| own).copied())
 }
 
 /// The labels of a mesh, ascending: label k belongs to node number `first + k`.
@@ -182,13 +180,11 @@ impl Labels {
 
     fn set(&self, here: &Path, set: &NodeSet) -> Result<Vec<usize>, Fault> {
         let here = here.then("nodes");
-        let mut nodes = self.numbers(|| here.clone(), &set.nodes)?;
+        let nodes = self.numbers(|| here.clone(), &set.nodes)?;
         if nodes.is_empty() {
             bail!(here, "the set has no nodes");
         }
-        nodes.sort_unstable();
-        nodes.dedup();
-        Ok(nodes)
+        Ok(distinct(nodes))
     }
 }
 

@@ -3,10 +3,10 @@
 use super::{EntryKind, NameEntry, Names};
 use crate::format::error::{Fault, Path, at, bail, fault};
 use crate::format::spec::Nodes;
-use crate::groups::Connected;
 use crate::number::sig4;
 use std::collections::HashSet;
 use stickslip_core::counted;
+use stickslip_core::groups::Connected;
 use stickslip_core::plane::distance;
 
 impl Names {

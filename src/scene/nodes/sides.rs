@@ -2,10 +2,10 @@
 
 use super::elements::{Element, named};
 use crate::format::error::{Fault, Path, bail};
-use crate::groups::marked;
 use crate::shown::first_of;
 use std::collections::{HashMap, HashSet};
 use stickslip_core::fem::lagrange::MAX_NODES;
+use stickslip_core::groups::marked;
 use stickslip_core::{Node, counted};
 
 /// Sides in walking order.

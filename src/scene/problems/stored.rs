@@ -18,6 +18,7 @@ use crate::format::read;
 use crate::format::stored::{RigidContact, Stored};
 use crate::scene::placed;
 use std::collections::HashMap;
+use stickslip_core::plane::max_abs;
 use stickslip_exchange::calculix::stiffness::{self, MatrixUnknown};
 use stickslip_exchange::problem;
 use stickslip_platform::input;
@@ -265,14 +266,9 @@ impl<'s> StoredParts<'s> {
         };
         let spec = self.spec;
         let contacts = self.contacts.iter().enumerate().map(contact);
-        let largest = spec
-            .moved
-            .iter()
-            .flat_map(|moved| [moved.x, moved.y])
-            .flatten()
-            .chain(spec.contacts.iter().map(|c| c.gap))
-            .map(f64::abs)
-            .fold(0.0, f64::max);
+        let moved = spec.moved.iter().flat_map(|moved| [moved.x, moved.y]);
+        let gaps = spec.contacts.iter().map(|c| c.gap);
+        let largest = max_abs(moved.flatten().chain(gaps));
         Problem {
             about: spec.about.clone(),
             spacing: spec.spacing.or((largest > 0.0).then_some(largest)),

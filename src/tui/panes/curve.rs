@@ -12,6 +12,7 @@ use crate::view::View;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
+use stickslip_core::plane::range;
 use stickslip_debugger::history::frame;
 use stickslip_scene::{shortest, sig2, sig6};
 
@@ -70,13 +71,8 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
 /// The range of one coordinate, which includes zero, is wider than the noise and never overflows when subtracted.
 fn span(points: &[[f64; 2]], axis: usize, noise: f64) -> [f64; 2] {
     const MOST: f64 = 1e300;
-    let values = || {
-        points
-            .iter()
-            .map(|point| point[axis])
-            .filter(|x| x.abs() < MOST)
-    };
-    let (low, high) = (values().fold(0.0, f64::min), values().fold(0.0, f64::max));
+    let values = points.iter().map(|point| point[axis]);
+    let [low, high] = range(values.filter(|x| x.abs() < MOST).chain([0.0]));
     match high - low {
         size if size > noise.max(1e-300) => [low, high],
         _ => [0.0, 1.0],

@@ -159,21 +159,16 @@ fn message_lines(app: &App, view: Option<&View>, width: usize) -> paint::Lines {
 fn keys(app: &App, view: Option<&View>, places: &ScreenAreas) -> paint::Lines {
     let room = places.footer.width as usize;
     let typed = match &app.overlay {
-        Overlay::Manual(reader) => reader.typed(),
-        Overlay::Help(help) => help.search.typed(),
-        Overlay::Solver(reader) => reader.search.typed(),
+        Overlay::Text(page) => page.search.typed(),
         _ => None,
-    };
-    let page = |own: &[(&str, &str)]| {
-        let search = [("/", "search"), ("n N", "again"), ("Esc", "back")];
-        listed(&[own, &search].concat(), app)
     };
     let line = match &app.overlay {
         _ if typed.is_some() => listed(&[("Enter", "find"), ("Esc", "back")], app),
         Overlay::None => table_keys(app, view, places, room),
-        Overlay::Manual(_) => page(&[("↑↓", "scroll"), ("←→", "page")]),
-        Overlay::Help(_) => page(&[("↑↓", "scroll")]),
-        Overlay::Solver(_) => page(&[("↑↓ ←→", "scroll"), ("End", "follow")]),
+        Overlay::Text(page) => {
+            let search = [("/", "search"), ("n N", "again"), ("Esc", "back")];
+            listed(&[page.text().keys(), &search].concat(), app)
+        }
         Overlay::Chart(page) => {
             let mut keys = vec![("←→", "run"), ("x", "cost")];
             keys.extend(page.has_forces().then_some(("f", "forces")));

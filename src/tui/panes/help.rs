@@ -1,16 +1,12 @@
-//! The help page (`?`): all actions with their keys, and the marks on the screen; and the list of current key bindings, in the
+//! The help (`?`): all actions with their keys, and the marks on the screen; and the list of current key bindings, in the
 //! format of the file that changes them.
 
 use crate::layout::Pane;
 use crate::paint;
-use crate::scroll::scrolled;
 use crate::theme::Theme;
-use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
 use stickslip_debugger::action::config;
 use stickslip_debugger::action::{ACTIONS, Context, Group, Keymap};
-use stickslip_manual::search::Search;
 use stickslip_scene::joined;
 
 /// The marks on the screen.
@@ -50,97 +46,6 @@ const FIRST: [&str; 10] = [
     "diagnosis",
     "command",
 ];
-
-/// Lines per page key.
-const PAGE: usize = 10;
-
-/// The list that is shown.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Listing {
-    /// All actions.
-    Actions,
-    /// The current key bindings, in the format of their file.
-    Keys,
-}
-
-/// An open list.
-#[derive(Debug, Clone)]
-pub struct Help {
-    /// The list.
-    pub listing: Listing,
-    /// The first visible line, from 0.
-    pub top: usize,
-    /// The search in it.
-    pub search: Search,
-}
-
-impl Help {
-    /// Opens a list at its top.
-    pub fn new(listing: Listing) -> Help {
-        Help {
-            listing,
-            top: 0,
-            search: Search::default(),
-        }
-    }
-
-    /// Handles a key in a page of this size; returns false if it closes the page.
-    pub fn key(&mut self, name: &str, size: Rect, keymap: &Keymap, context: &Context) -> bool {
-        let lines = self.lines(size.width as usize, &Theme::mono(), keymap, context);
-        let last = lines.len().saturating_sub(size.height as usize);
-        // A match near the end is shown at the bottom of the last page.
-        let top = self.top.min(last);
-        let texts: Vec<String> = lines.iter().map(Line::to_string).collect();
-        if let Some(to) = self.search.key(name, self.top, &texts) {
-            self.top = to.unwrap_or(self.top);
-            return true;
-        }
-        self.top = scrolled(top, name, PAGE, last).unwrap_or(top);
-        !["Esc", "q", "?", "F1", "Enter"].contains(&name)
-    }
-
-    fn lines(
-        &self,
-        width: usize,
-        theme: &Theme,
-        keymap: &Keymap,
-        context: &Context,
-    ) -> paint::Lines {
-        match self.listing {
-            Listing::Actions => page(width, theme, keymap, context),
-            Listing::Keys => keys(theme, keymap),
-        }
-    }
-}
-
-/// Draws the page.
-pub fn draw(
-    buffer: &mut Buffer,
-    area: Rect,
-    help: &Help,
-    theme: &Theme,
-    keymap: &Keymap,
-    context: &Context,
-) {
-    let title = help.search.title().unwrap_or_else(|| {
-        match help.listing {
-            Listing::Actions => "Help",
-            Listing::Keys => "Keys",
-        }
-        .into()
-    });
-    let inner = paint::frame(buffer, area, &title, true, theme);
-    let mut lines = help.lines(inner.width as usize, theme, keymap, context);
-    for line in &mut lines {
-        if help.search.holds(&line.to_string()) {
-            *line = Line::styled(line.to_string(), theme.selected);
-        }
-    }
-    let top = help
-        .top
-        .min(lines.len().saturating_sub(inner.height as usize));
-    paint::lines(buffer, inner, &lines[top..]);
-}
 
 /// Widths of the columns of keys and names.
 const KEYS: usize = 14;
@@ -197,7 +102,7 @@ pub fn page(width: usize, theme: &Theme, keymap: &Keymap, context: &Context) -> 
 }
 
 /// The current key bindings, and the file that changes them.
-fn keys(theme: &Theme, keymap: &Keymap) -> paint::Lines {
+pub fn keys(theme: &Theme, keymap: &Keymap) -> paint::Lines {
     let file = config::folder().map(|folder| folder.join(config::KEYS));
     let file = file.map_or(config::KEYS.into(), |file| file.display().to_string());
     let state = if keymap.is_changed() {

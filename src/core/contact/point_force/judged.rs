@@ -7,9 +7,9 @@
 use crate::contact::closest_points::{self, ClosestPoint};
 use crate::contact::facing::{MOST, faced};
 use crate::contact::point_force;
-use crate::fem::lagrange::{MAX_NODES, gauss};
+use crate::fem::lagrange::{MAX_NODES, gauss, legendre};
 use crate::model::{Contact, PointGive, Surface};
-use crate::plane::dot;
+use crate::plane::{dot, plus};
 use crate::{ElementPositions, SurfaceElement, SurfacePoint};
 
 /// The interface in one configuration, with its forces.
@@ -31,7 +31,7 @@ impl LoadedInterface<'_> {
     /// Position at which a slave node is judged: its own, plus the offset.
     pub fn point(&self, slave: usize) -> [f64; 2] {
         let (at, out) = (self.now[self.contacts[slave].node], self.out.get(slave));
-        out.map_or(at, |way| [at[0] + way[0], at[1] + way[1]])
+        out.map_or(at, |way| plus(at, *way))
     }
 }
 
@@ -278,16 +278,16 @@ impl ProjectedStep {
         };
         let part = |k: usize| (2 * k + 1) as f64 / 2.0;
         for k in 0..degree {
-            let by = |from: f64, to: f64| integral(rule, from, to, &|eta| legendre(k, eta));
+            let by = |from: f64, to: f64| integral(rule, from, to, &|eta| legendre(k, eta).0);
             all.step[k] = part(k) * (by(xi, 1.0) - by(-1.0, xi));
-            all.step_slope[k] = -2.0 * part(k) * legendre(k, xi);
+            all.step_slope[k] = -2.0 * part(k) * legendre(k, xi).0;
         }
         let (step, slope) = (all.step, all.step_slope);
         let series = |of: &[f64; MAX_NODES], eta: f64| -> f64 {
             of.iter()
                 .enumerate()
                 .take(degree)
-                .map(|(k, a)| a * legendre(k, eta))
+                .map(|(k, a)| a * legendre(k, eta).0)
                 .sum()
         };
         // The integration starts at the left end, where the integral is 1 + ξ.
@@ -296,8 +296,8 @@ impl ProjectedStep {
         for (eta, weight) in rule {
             let (value, slope) = (weight * line(*eta), weight * line_slope(*eta));
             for k in 0..degree {
-                all.hat[k] += part(k) * value * legendre(k, *eta);
-                all.hat_slope[k] += part(k) * slope * legendre(k, *eta);
+                all.hat[k] += part(k) * value * legendre(k, *eta).0;
+                all.hat_slope[k] += part(k) * slope * legendre(k, *eta).0;
             }
         }
         all
@@ -308,19 +308,6 @@ fn integral(rule: &[(f64, f64)], from: f64, to: f64, f: &dyn Fn(f64) -> f64) -> 
     let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
     let points = rule.iter().map(|(x, w)| w * f(middle + half * x));
     half * points.sum::<f64>()
-}
-
-/// P_k(x).
-fn legendre(k: usize, x: f64) -> f64 {
-    let (mut before, mut now) = (1.0, x);
-    if k == 0 {
-        return 1.0;
-    }
-    for n in 1..k {
-        let n = n as f64;
-        (before, now) = (now, ((2.0 * n + 1.0) * x * now - n * before) / (n + 1.0));
-    }
-    now
 }
 
 /// Adds the force of a slave node to `contact` at the node, and its reaction at the nodes of the master element: at the closest

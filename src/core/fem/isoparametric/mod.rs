@@ -27,6 +27,7 @@ use crate::fem::element::{self, Previous};
 use crate::fem::material::Response;
 use crate::linalg::vectorise;
 use crate::model::{Law, Update};
+use crate::plane::max_abs;
 use nalgebra::{Matrix2, Vector3};
 use ring::{Ring, RingTerms};
 use std::f64::consts::PI;
@@ -130,7 +131,7 @@ pub(super) fn slope_at<const N: usize>(
     let rows = |first: usize| [first, first + 1].map(|k| [by[0][k], by[1][k]]);
     let (by_x, by_u) = (rows(0), rows(2));
     let (inverse, det) = inverse(by_x);
-    let size = by_x.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
+    let size = max_abs(by_x.iter().flatten());
     let row = |by_u: [f64; 2]| [0, 1].map(|b| by_u[0] * inverse[0][b] + by_u[1] * inverse[1][b]);
     (det > FLAT * size * size).then(|| by_u.map(row))
 }

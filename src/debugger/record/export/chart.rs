@@ -5,6 +5,7 @@ use super::timeline::marker;
 use crate::RoundOff;
 use crate::explain::names;
 use crate::explain::trail::{self, Cone};
+use stickslip_core::plane;
 use stickslip_core::{ContactRecord, MonitorQuantity, counted};
 use stickslip_scene::{sig4, sig6};
 use stickslip_study::drawn::PlotError;
@@ -71,11 +72,8 @@ fn rounded(range: [f64; 2], (long, apart): (f64, f64)) -> [f64; 2] {
 
 /// The range of some values with 0.
 fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
-    let (low, high) = values
-        .filter(|value| value.is_finite())
-        .fold((0.0_f64, 0.0_f64), |(low, high), x| {
-            (low.min(x), high.max(x))
-        });
+    let finite = values.filter(|value| value.is_finite());
+    let [low, high] = plane::range(finite.chain([0.0]));
     if high > low { [low, high] } else { [0.0, 1.0] }
 }
 

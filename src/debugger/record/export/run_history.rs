@@ -5,7 +5,7 @@ use super::frozen::Origin;
 use crate::Strip;
 use crate::explain::trail;
 use std::sync::Arc;
-use stickslip_core::{Event, Outcome, State, Status, Stepper};
+use stickslip_core::{Event, State, Status, Stepper};
 use stickslip_scene::Scene;
 
 /// Records of a run so far.
@@ -45,7 +45,7 @@ impl<'a> RunHistory<'a> {
             let more = self.events.len().saturating_sub(trail::LONGEST);
             self.events.drain(..more);
         }
-        let accepts = matches!(stepper.event().outcome, Outcome::Increment { .. });
+        let accepts = stepper.event().outcome.is_accepted();
         if self.parts.contains(&PicturePart::Chart) && accepts {
             let mut monitors = Vec::new();
             stepper.monitors(&mut monitors);

@@ -4,6 +4,7 @@
 //! by at most one unit in the last of the four printed digits.
 
 use std::ops::Range;
+use stickslip_core::groups::distinct;
 use stickslip_core::interface::cycle;
 use stickslip_exchange::calculix::cel::ClosedContact;
 use stickslip_exchange::calculix::files::{Attempt, CalculixFiles, End};
@@ -54,13 +55,11 @@ pub fn first(run: &CalculixFiles, attempt: &Attempt) -> Option<Cycle> {
         is_cycle.then_some(turn)
     })?;
     let iterations = of(found.start)..of(found.end);
-    let mut members: Vec<usize> = iterations
+    let members = iterations
         .clone()
         .filter_map(|k| Some(changed(run.closed(k)?, run.closed(iterations.start)?)))
-        .flatten()
-        .collect();
-    members.sort_unstable();
-    members.dedup();
+        .flatten();
+    let members = distinct(members);
     Some(Cycle {
         iterations,
         members,
@@ -98,16 +97,13 @@ fn apart(a: f64, b: f64) -> Option<f64> {
 
 /// The slaves whose contact elements differ between two iterations, in ascending order.
 pub fn changed(one: &[ClosedContact], other: &[ClosedContact]) -> Vec<usize> {
-    let missing = |from: &[ClosedContact], other: &[ClosedContact]| {
-        let lost = from
-            .iter()
-            .filter(|closed| other.binary_search(closed).is_err());
-        lost.map(|closed| closed.slave as usize).collect::<Vec<_>>()
-    };
-    let mut found = [missing(one, other), missing(other, one)].concat();
-    found.sort_unstable();
-    found.dedup();
-    found
+    let of_one = one
+        .iter()
+        .filter(|closed| other.binary_search(closed).is_err());
+    let of_other = other
+        .iter()
+        .filter(|closed| one.binary_search(closed).is_err());
+    distinct(of_one.chain(of_other).map(|closed| closed.slave as usize))
 }
 
 #[cfg(test)]

@@ -3,13 +3,13 @@
 pub use super::sorted_points::Vector;
 use super::sorted_points::{SortedPoints, extent};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
+use stickslip_core::groups::Connected;
 use stickslip_core::model::RunShape;
 use stickslip_exchange::calculix::cel::Slave;
 use stickslip_exchange::inp::Deck;
 use stickslip_exchange::inp::deck::{
     Adjust, Faces, Family, Interaction, Normal, Section, Set, Step, Value,
 };
-use stickslip_scene::groups::Connected;
 use stickslip_scene::joined;
 
 /// Position tolerance of a tie without one, in sizes of a master face (CalculiX: 2.5 %).
@@ -616,9 +616,7 @@ fn sorted(corners: &[usize]) -> Vec<usize> {
 /// Connected elements: the body of each node, and the names of the bodies.
 fn bodies(deck: &Deck) -> (Vec<Option<usize>>, Vec<String>) {
     let mut groups = Connected::new(deck.nodes.len());
-    for ends in deck.elements.iter().flat_map(|e| e.nodes.windows(2)) {
-        groups.join(ends[0], ends[1]);
-    }
+    deck.elements.iter().for_each(|e| groups.join_all(&e.nodes));
     let mut body_of = vec![None; deck.nodes.len()];
     let (mut known, mut names) = (BTreeMap::new(), Vec::new());
     for (k, element) in deck.elements.iter().enumerate() {
