@@ -31,7 +31,7 @@ fn the_pages_of_failed_scenes_do_not_contradict_themselves() {
     assert!(failed >= 15, "{failed} of {}", names.len());
     // Random scenes that fail; most of the first 200 of this seed.
     let numbers = [
-        33, 34, 63, 70, 71, 77, 95, 104, 106, 114, 119, 131, 142, 143, 167, 171, 185, 192,
+        34, 63, 70, 71, 77, 95, 104, 106, 114, 119, 131, 142, 143, 167, 171, 185, 192,
     ];
     for number in numbers {
         let Ok((_, scene)) = tally::scene(1, number, &[]) else {

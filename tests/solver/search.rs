@@ -159,6 +159,21 @@ fn increments_that_diverge_with_frozen_geometry_are_found_with_the_consistent_on
     }
 }
 
+/// The path ends where a node gets behind the end of its surface; at higher loads other nodes touch.
+#[test]
+fn an_increment_past_the_end_of_the_path_is_a_marked_jump() {
+    let name = "path-ends-behind-the-end-of-a-surface";
+    let searched = run(name, &[]);
+    assert_eq!(searched.failure, None);
+    let longer = searched.found.iter().filter(|by| **by == Fallback::Longer);
+    assert_eq!(longer.count(), 1, "{:?}", searched.found);
+    // The other one is a loss of stability during unloading.
+    assert_eq!(searched.jumps, 2);
+    let limited = run(name, &[("settings.search_limit", "1")]);
+    assert!(limited.failure.is_some());
+    assert!(limited.spent < 20_000, "{}", limited.spent);
+}
+
 #[test]
 fn a_damped_motion_finds_the_next_equilibrium() {
     let searched = run("moves-to-another-equilibrium", &[]);

@@ -78,9 +78,9 @@ impl SparseInterface {
         let compliance = blocks(contacts, given.linear);
         let count = 2 * contacts;
         let own = (0..contacts).map(|k| compliance.own(k));
-        let own = own.flat_map(|own| [own[0][0].abs(), own[1][1].abs()]);
-        let mean = own.clone().sum::<f64>() / count as f64;
-        let softest = own.fold(0.0, f64::max);
+        let own = own.map(|own| [own[0][0].abs(), own[1][1].abs()]);
+        let mean = own.clone().map(|[n, t]| n + t).sum::<f64>() / count as f64;
+        let softest = own.flatten().fold(0.0, f64::max);
         Some(SparseInterface {
             first_force: given.first_force,
             floor: given.floor,
@@ -324,13 +324,13 @@ impl Source for SparseInterface {
         let scale = loads.max(largest(&self.before)).max(f64::MIN_POSITIVE);
         let force = self.spring * largest(&self.moved);
         self.norms = at.norms(force, scale);
-        // Gaps, drifts and forces that the natural map of accepted forces allows.
-        let size = self.before.iter().map(|f| f * f).sum::<f64>().sqrt();
-        let settled = SETTLED.max(at.settings.matrix_accuracy);
-        let allowed = settled
-            * (size / scale)
-                .max(size * self.softest / model.length)
-                .max(1.0);
+        let mut allowed = SETTLED;
+        if at.settings.matrix_accuracy > SETTLED {
+            // Gaps, drifts and forces that the natural map of accepted forces allows.
+            let size = self.before.iter().map(|f| f * f).sum::<f64>().sqrt();
+            let times = (size / scale).max(size * self.softest / model.length);
+            allowed = at.settings.matrix_accuracy * times.max(1.0);
+        }
         self.norms.limit = self.norms.limit.max(allowed);
         Ok(())
     }

@@ -147,7 +147,7 @@ impl Solver for ConeSolver {
         let count = self.model.contacts.len();
         let nodes: Vec<_> = (0..count).map(|slave| self.record(slave, error)).collect();
         let changes = |record: &ContactRecord| record.decision.next != record.decision.before;
-        let outcome = match error <= limit && (last || !nodes.iter().any(changes)) {
+        let outcome = match error <= limit && (limit > SETTLED || !nodes.iter().any(changes)) {
             true => Outcome::accepted(norms(error), true),
             false if last => Outcome::Failed(Failure::Reported {
                 reason: format!(

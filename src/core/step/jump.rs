@@ -9,7 +9,8 @@
 //! opens, slides or touches, or to the onset of a load do shrink. If increments are not cut, suspected increments are marked.
 //!
 //! A fallback ([`crate::step::recovery::fallback`]) must not jump: a state on another branch does not replace halves that failed,
-//! and the load at which a structure jumps must not depend on the increment.
+//! and the load at which a structure jumps must not depend on the increment. Only held-back sliding may, and longer increments,
+//! which skip loads and are always marked.
 //!
 //! Near a limit point the halves may have no equilibrium although the whole increment has one beyond it. If the halves fail, the
 //! suspected increment is taken as a whole, and is a jump if it still moves more than expected.
@@ -103,6 +104,9 @@ impl Stepper {
             trip.found = Some(found);
             landing.unstable = self.now.state.record.watch.loss(trip.found);
         }
+        // Loads were skipped for which no state was found.
+        let fallback = self.now.state.recovery.fallback;
+        landing.jumped |= fallback.is_some_and(|route| route.by == Fallback::Longer);
         self.now.touch_down(after, verdict, landing, &trip)
     }
 

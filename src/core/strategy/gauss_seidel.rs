@@ -31,7 +31,7 @@ const FALL: f64 = 0.1;
 const MOST_SWEEPS: usize = 500;
 const MEASURED: usize = 10;
 /// Fraction of the error that is left after [`MOST_SWEEPS`] sweeps that do not improve the forces.
-const IDLE: f64 = 0.5;
+const IDLE: f64 = 0.9;
 /// Maximum number of sweeps over a given compliance.
 const MOST_GIVEN: usize = 100_000;
 
@@ -123,6 +123,9 @@ impl SweepState {
 
     /// The sweeps of a minor iteration over a given compliance.
     fn reduce(&mut self) {
+        if self.is_settled() {
+            return;
+        }
         if self.sweeps == 0 {
             self.change = self.sweep.settle(SETTLED);
         }

@@ -56,9 +56,7 @@ pub fn settled(event: &Event) -> Option<String> {
 /// Describes forces that were accepted with this natural map.
 pub fn not_unique(error: f64) -> String {
     let why = match error > SETTLED {
-        true => {
-            "settings.matrix_accuracy is reached: contact forces that more sweeps do not improve"
-        }
+        true => "settings.matrix_accuracy allows the contact forces of the sweeps; they",
         false => "the modes do not determine the contact forces; those of the sweeps",
     };
     format!(

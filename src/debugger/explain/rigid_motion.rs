@@ -269,7 +269,7 @@ impl<'a> BodyMotion<'a> {
         };
         let (push, pressed) = (self.power(state), pressed.power(state).max(0.0));
         let most = tangent * pressed + cohesion;
-        if most >= push * (1.0 - NONE) {
+        if pressed == 0.0 || most >= push * (1.0 - NONE) {
             return None;
         }
         let enough = ((push - cohesion) / pressed).atan().to_degrees();

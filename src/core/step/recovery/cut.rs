@@ -17,7 +17,7 @@ impl Recovery for IncrementCut {
     }
 
     fn propose(&self, why: &Failure, stalled: &FailedIncrement<'_>) -> Option<Retry> {
-        if !stalled.size_helps(why) {
+        if !stalled.size_helps(why) || stalled.is_exhausted() {
             return None;
         }
         let part = stalled.state.sub_increment.halved();

@@ -54,7 +54,7 @@ impl Recovery for Fallback {
             Fallback::Deeper => from.halved(),
             Fallback::Release => state.sub_increment,
             Fallback::Held | Fallback::Back => from,
-            Fallback::Longer => stalled.longer(),
+            Fallback::Longer => stalled.longer(from.rest.unwrap_or(from.to))?,
             _ => rest,
         };
         let (why, size) = (why.clone(), part.size());
@@ -117,10 +117,7 @@ impl Fallback {
             }
             Fallback::Release => stalled.can_release(),
             Fallback::Held => stalled.can_hold(why),
-            Fallback::Longer => {
-                let from = last_half(state);
-                stalled.longer().to != from.rest.unwrap_or(from.to)
-            }
+            Fallback::Longer => true,
             Fallback::Section => {
                 let rest = last_half(state).rest(state.start.load_factor);
                 // Without a least increment of the scene, the section may be smaller than 1/64.

@@ -115,10 +115,24 @@ impl FailedIncrement<'_> {
             && self.state.record.searched.released != Some(start)
     }
 
-    /// Twice the increment from the last accepted state, at most to the end of the leg.
-    pub fn longer(&self) -> SubIncrement {
-        let place = self.state.start.place();
-        SubIncrement::whole(self.model, place, 2.0 * self.state.controls.increment)
+    /// Twice the increment from the last accepted state, at most to the end of the leg. `None` if it ends before this load factor.
+    pub fn longer(&self, end: f64) -> Option<SubIncrement> {
+        // A damped motion has another start.
+        let state = self.state;
+        let start = state
+            .record
+            .searched
+            .origin
+            .as_ref()
+            .unwrap_or(&state.start);
+        let longer = SubIncrement::whole(self.model, start.place(), 2.0 * state.controls.increment);
+        (longer.size() > (end - start.load_factor).abs()).then_some(longer)
+    }
+
+    /// Whether the search may not go on with longer increments.
+    pub fn is_exhausted(&self) -> bool {
+        let by = self.state.recovery.fallback.map(|fallback| fallback.by);
+        by == Some(Fallback::Longer) && !self.searches(Fallback::Longer)
     }
 
     /// Whether an increment with this failure may succeed if sliding is held back.

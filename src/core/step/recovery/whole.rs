@@ -18,7 +18,11 @@ impl Recovery for WholeIncrement {
         let state = stalled.state;
         let rungs = strategy::rungs(state.controls.settings.strategy);
         let cuts = !rungs.is_empty() && stalled.model.jumps == Jumps::Cut;
-        if !cuts || matches!(why, Failure::BranchJump { .. }) || !stalled.size_helps(why) {
+        if !cuts
+            || matches!(why, Failure::BranchJump { .. })
+            || !stalled.size_helps(why)
+            || stalled.is_exhausted()
+        {
             return None;
         }
         let from = state.start.load_factor;
