@@ -12,7 +12,7 @@
 //! resistance of each contact of the body against the free motion. With v the relative velocity, friction resists with at
 //! most tan φ F_n + c per |v_t|, of which |F_t| is used; an opening contact yields F_n per v_n until its force is zero.
 //!
-//! A body that no load holds has too little friction if the loads alone show it ([`BodyMotion::exceeds_friction`]).
+//! A body that no load holds has too little friction if the loads alone show it.
 //!
 //! A deformable surface can hold a body for a while after all of its contacts slide. Accepted increments are therefore also
 //! checked directly ([`body_without_friction`]).
