@@ -113,7 +113,7 @@ impl TextPage {
         self.text
     }
 
-    /// The first visible line of so many, in a page of this height.
+    /// Index of the first visible line, out of this many, on a page of this height.
     fn first(&self, lines: usize, height: usize) -> usize {
         let last = self.text.last(lines, height);
         match (self.top, self.text) {

@@ -59,7 +59,7 @@ documented! {
         #[serde(skip_serializing_if = "is_default")]
         pub search: SearchMode,
         /// Maximum number of factorizations that a run spends on such searches; a minor iteration counts as one, a major iteration
-        /// as one more. 0 means 4 times those of the rest of the run, and 5 times for longer increments. Default: 0.
+        /// as one more. 0 means 4 times those of the rest of the run, and 5 times for parts of twice the increment. Default: 0.
         #[serde(skip_serializing_if = "is_default")]
         pub search_limit: u32,
         /// How gaps before the first increment are treated. Default: keep.
@@ -224,8 +224,8 @@ documented! {
     /// Whether to search for other solutions where an increment fails.
     pub choice SearchMode {
         /// After the strategies and the other parts of the increment: contacts near each other at the start are closed, the increment is cut
-        /// below its least size, where equilibrium ends the nodes move damped to the next one, and at last longer increments are
-        /// tried. The last two are marked.
+        /// below its least size, where equilibrium ends the nodes move damped to the next one, and at last parts of
+        /// twice the increment are tried. The last two are marked.
         #[default]
         Auto,
         /// The increment fails.

@@ -104,7 +104,7 @@ impl Stepper {
             trip.found = Some(found);
             landing.unstable = self.now.state.record.watch.loss(trip.found);
         }
-        // Loads were skipped for which no state was found.
+        // It may skip loads without equilibrium.
         let fallback = self.now.state.recovery.fallback;
         landing.jumped |= fallback.is_some_and(|route| route.by == Fallback::Longer);
         self.now.touch_down(after, verdict, landing, &trip)

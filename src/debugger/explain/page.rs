@@ -39,8 +39,8 @@ const MOST_STATES: usize = 4;
 /// Maximum number of remedies tried for the page; the list of remedies tries all.
 const MOST_TRIED: usize = 6;
 
-/// Makes the page of a state. A finer mesh is generated from `spec`, the scene as its author wrote it. The page of a failed state
-/// lists the `warnings` of the run before it. `tell` is called with each version of the page. `None` if interrupted.
+/// Makes the page of a state. A finer mesh is generated from `spec`, the scene as its author wrote it. `warnings` are
+/// those of the run, which the page of a failed state repeats. `tell` is called with each version of the page. `None` if interrupted.
 pub fn page(
     stepper: &mut Stepper,
     state: &State,

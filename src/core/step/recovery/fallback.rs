@@ -16,7 +16,7 @@
 //! 6. with parts down to 1/4096 of the least increment;
 //! 7. with the loads of the last equilibrium, from which a damped motion leads to the next one (`damped`), which is
 //!    marked;
-//! 8. with twice the increment, past the end of this one: there may be an equilibrium again. A jump is marked.
+//! 8. in parts of twice the increment: past the end of this one there may be an equilibrium again. The part is marked as a jump.
 //!
 //! Before all others, if a body is unsupported at the start of the history, near contacts start closed.
 //!
@@ -55,7 +55,7 @@ crate::words! {
         /// The change of the contact geometry in the tangent, in this increment and all that follow.
         Geometry "geometry: consistent",
         /// Twice the increment from the last equilibrium, past the end of this one, and its halves.
-        Longer "an increment past the end of this one",
+        Longer "parts of twice the increment",
     }
 }
 
