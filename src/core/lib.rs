@@ -132,7 +132,7 @@ pub use linear::stability::Stability;
 pub use model::{
     Body, BodyKind, Bond, BoundUpdate, Component, Contact, Control, Dofs, Elastic, ElementKind,
     Friction, InitialGaps, InitialState, Jumps, Law, Mode, Model, Monitor, MonitorQuantity, Node,
-    Plane, RunFinding, SearchMode, Settings, Solid, Strategy, Surface, Touch, Update,
+    Plane, RunFinding, SearchBudget, SearchMode, Settings, Solid, Strategy, Surface, Touch, Update,
 };
 pub use step::drive::{RunEnd, Until};
 pub use step::event::{MotionEvent, Position};

@@ -286,7 +286,7 @@ fn the_largest_load_on_the_path_is_named_where_the_search_ends() {
 fn the_end_of_the_path_is_named_where_contacts_change_or_an_element_is_inverted() {
     for (arguments, up_to, beyond) in [
         (
-            "tests/findings/path-ends-behind-the-end-of-a-surface.ron --set settings.search_limit=2000",
+            "tests/findings/path-ends-behind-the-end-of-a-surface.ron --set settings.search=2000",
             "beyond load ",
             "q.3 gets behind surface f around its end at (1.045, 0.6585), by 0.1658 ",
         ),
@@ -306,7 +306,7 @@ fn the_end_of_the_path_is_named_where_contacts_change_or_an_element_is_inverted(
             "q.1 slides off the end of surface fp at (-0.1009, 0.4627), where it transmits F_n = 0.9644 (held free, it is inside",
         ),
         (
-            "tests/findings/slides-off-the-end-and-snaps.ron --set settings.search_limit=2000",
+            "tests/findings/slides-off-the-end-and-snaps.ron --set settings.search=2000",
             "beyond load ",
             "s.5 slides off the end of surface f at (1.737, 0.01805), where it transmits F_n = 2.716 (held free, no equilibrium",
         ),
@@ -365,7 +365,7 @@ fn changes_of_the_scene_are_tried_from_its_start() {
     ] {
         let file = format!("tests/findings/{file}");
         // Without a limit, longer increments get past some of these ends.
-        let (code, reason, _) = told(&[&file, "--set", "settings.search_limit=2000"]);
+        let (code, reason, _) = told(&[&file, "--set", "settings.search=2000"]);
         assert_eq!(code, 3, "{reason}");
         let tried = format!("try: --set {change} (tried from the start: passes, ");
         assert!(reason.contains(&tried), "{reason}");

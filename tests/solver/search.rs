@@ -169,7 +169,7 @@ fn an_increment_past_the_end_of_the_path_is_a_marked_jump() {
     assert_eq!(longer.count(), 1, "{:?}", searched.found);
     // The other one is a loss of stability during unloading.
     assert_eq!(searched.jumps, 2);
-    let limited = run(name, &[("settings.search_limit", "1")]);
+    let limited = run(name, &[("settings.search", "1")]);
     assert!(limited.failure.is_some());
     assert!(limited.spent < 20_000, "{}", limited.spent);
 }
@@ -201,7 +201,7 @@ fn no_search_spends_more_than_its_limit() {
     let name = "moves-to-another-equilibrium";
     let whole = run(name, &[]).spent;
     let limit = whole / 2;
-    let limited = run(name, &[("settings.search_limit", &limit.to_string())]);
+    let limited = run(name, &[("settings.search", &limit.to_string())]);
     assert!(limited.failure.is_some());
     // The attempt in which the limit is reached is finished: at most 60 major iterations, here with one minor iteration each.
     assert!(limited.spent <= limit + 120, "{} of {limit}", limited.spent);

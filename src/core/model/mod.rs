@@ -34,7 +34,8 @@ pub use load::{Factor, Jumps, Load, Prescribed, PressedFace, Pressure, least, on
 pub use mesh::boundary;
 pub use settings::{
     AtCycle, AtLimit, BoundUpdate, Geometry, InitialGaps, LinearSolver, PointForce, Refactor,
-    ResidualMethod, SearchMode, Settings, SlipCount, Sticking, Strategy, TieRule, Touch,
+    ResidualMethod, SearchBudget, SearchMode, Settings, SlipCount, Sticking, Strategy, TieRule,
+    Touch,
 };
 
 /// A checked scene.

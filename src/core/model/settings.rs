@@ -55,13 +55,11 @@ documented! {
         /// Siconos' sparse matrices.
         #[serde(skip_serializing_if = "is_zero")]
         pub matrix_accuracy: f64,
-        /// Whether the strategy `ladder` searches for other solutions where an increment fails. Default: auto.
-        #[serde(skip_serializing_if = "is_default")]
-        pub search: SearchMode,
-        /// Maximum number of factorizations that a run spends on such searches; a minor iteration counts as one, a major iteration
-        /// as one more. 0 means 4 times those of the rest of the run, and 5 times for parts of twice the increment. Default: 0.
-        #[serde(skip_serializing_if = "is_default")]
-        pub search_limit: u32,
+        /// Whether the strategy `ladder` searches for other solutions where an increment fails: `auto`, `off`, or the maximum number
+        /// of factorizations that a run spends on such searches. A minor iteration counts as one, a major iteration as one more.
+        /// Default: auto.
+        #[serde(skip_serializing_if = "is_default", alias = "search_limit")]
+        pub search: SearchBudget,
         /// How gaps before the first increment are treated. Default: keep.
         #[serde(skip_serializing_if = "is_default")]
         pub initial_gaps: InitialGaps,
@@ -96,8 +94,7 @@ impl Default for Settings {
             tolerance: 1e-11,
             limit_load: LIMIT_LOAD,
             matrix_accuracy: 0.0,
-            search: SearchMode::default(),
-            search_limit: 0,
+            search: SearchBudget::default(),
             initial_gaps: InitialGaps::default(),
             adjust_gap: 0.0,
             memory: None,
@@ -220,12 +217,32 @@ documented! {
     }
 }
 
+/// How much a run may spend on searches for other solutions where an increment fails.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(
+    untagged,
+    expecting = "expected auto, off, or a number of factorizations"
+)]
+pub enum SearchBudget {
+    /// By a rule.
+    Mode(SearchMode),
+    /// At most this many factorizations.
+    Limit(u32),
+}
+
+impl Default for SearchBudget {
+    fn default() -> Self {
+        SearchBudget::Mode(SearchMode::default())
+    }
+}
+
 documented! {
     /// Whether to search for other solutions where an increment fails.
     pub choice SearchMode {
         /// After the strategies and the other parts of the increment: contacts near each other at the start are closed, the increment is cut
         /// below its least size, where equilibrium ends the nodes move damped to the next one, and at last parts of
-        /// twice the increment are tried. The last two are marked.
+        /// twice the increment are tried. The last two are marked. The limit is 4 times the factorizations of the rest of the run,
+        /// and 5 times for parts of twice the increment.
         #[default]
         Auto,
         /// The increment fails.

@@ -8,7 +8,7 @@ use crate::interface::line_search::LineSearch;
 use crate::interface::minor_history::MinorHistory;
 use crate::linear::source::AcceptedState;
 use crate::model::least;
-use crate::model::{Control, Geometry, SlipCount};
+use crate::model::{Control, Geometry, SearchBudget, SearchMode, SlipCount};
 use crate::step::arc_state::ArcState;
 use crate::step::intervention::Value;
 use crate::step::major_history::MajorHistory;
@@ -130,7 +130,7 @@ pub struct ExternalState {
     pub largest_force: f64,
 }
 
-/// Record of the search for recoveries in a run ([`crate::model::SearchMode`]). Costs are numbers of factorizations: one of the
+/// Record of the search for recoveries in a run ([`SearchBudget`]). Costs are numbers of factorizations: one of the
 /// interface for each minor iteration, one of the bodies for each major iteration.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct SearchRecord {
@@ -159,13 +159,16 @@ pub struct SearchRecord {
 const WORTH: u32 = 4;
 
 impl SearchRecord {
-    /// Whether a fallback may continue within the limit; 0 means [`WORTH`] times the cost of the run, and once more for the last
-    /// fallback. Smaller increments may spend half of it.
-    pub(super) fn can_afford(&self, by: Fallback, limit: u32) -> bool {
-        let limit = match limit {
-            0 if by == Fallback::Longer => self.run.saturating_mul(WORTH + 1),
-            0 => self.run.saturating_mul(WORTH),
-            limit => limit,
+    /// Whether a fallback may continue within the budget; automatically, it is [`WORTH`] times the cost of the run, and once more
+    /// for the last fallback. Smaller increments may spend half of it.
+    pub(super) fn can_afford(&self, by: Fallback, budget: SearchBudget) -> bool {
+        let limit = match budget {
+            SearchBudget::Mode(SearchMode::Off) => 0,
+            SearchBudget::Mode(SearchMode::Auto) if by == Fallback::Longer => {
+                self.run.saturating_mul(WORTH + 1)
+            }
+            SearchBudget::Mode(SearchMode::Auto) => self.run.saturating_mul(WORTH),
+            SearchBudget::Limit(limit) => limit,
         };
         match by {
             Fallback::Deeper => self.spent < limit / 2,

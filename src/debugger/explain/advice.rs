@@ -9,7 +9,7 @@ use super::remedy::{
     MOVE_AT_JUMPS, NEWTON, RAMP, Remedy, RemedyKind, SEARCH, STRESS_RESIDUAL, TOUCH_AT_START,
 };
 use super::surface_end::ending;
-use stickslip_core::model::{AtCycle, Geometry, ResidualMethod, SearchMode};
+use stickslip_core::model::{AtCycle, Geometry, ResidualMethod, SearchBudget, SearchMode};
 use stickslip_core::{BoundUpdate, Failure, Mode, Model, Singular, State, Strategy};
 use stickslip_scene::Spec;
 use stickslip_scene::gaps::turned;
@@ -82,7 +82,7 @@ fn kinds(state: &State, failure: &Failure) -> Vec<RemedyKind> {
     };
     let lags = settings.t_max == BoundUpdate::Lagged;
     let frozen = state.settings().geometry == Geometry::Frozen;
-    let searches = climbs && settings.search == SearchMode::Off;
+    let searches = climbs && settings.search == SearchBudget::Mode(SearchMode::Off);
     match failure {
         Failure::Cycle(_) => {
             add(!climbs, &[LADDER]);

@@ -34,8 +34,8 @@ use stickslip_core::plane::max_abs;
 use stickslip_core::step::arc_state::Change;
 use stickslip_core::{
     Body, ContactRecord, Failure, Intervention, Mode, Model, Outcome, PointDeformation,
-    RigidMotion, RunEnd, SearchMode, Settings, Singular, State, Stepper, Strategy, Until, counted,
-    strategy,
+    RigidMotion, RunEnd, SearchBudget, SearchMode, Settings, Singular, State, Stepper, Strategy,
+    Until, counted, strategy,
 };
 use stickslip_scene::{first_of, sig4, sig6};
 
@@ -201,7 +201,7 @@ fn with_ladder(
 ) -> Option<Result<u64, (State, Failure)>> {
     let settings = Settings {
         strategy: Strategy::Ladder,
-        search: SearchMode::Off,
+        search: SearchBudget::Mode(SearchMode::Off),
         ..state.controls.settings
     };
     stepper.restore(&state.attempt_again());

@@ -10,8 +10,8 @@ use std::ops::ControlFlow;
 use stickslip_core::groups::distinct;
 use stickslip_core::plane::{cross, dot, minus, unit};
 use stickslip_core::{
-    Intervention, Mode, Model, NodeKinematics, Outcome, RunEnd, SearchMode, Settings, State,
-    Stepper, SurfaceElement, Until,
+    Intervention, Mode, Model, NodeKinematics, Outcome, RunEnd, SearchBudget, SearchMode, Settings,
+    State, Stepper, SurfaceElement, Until,
 };
 use stickslip_scene::{sig4, sig6};
 
@@ -169,7 +169,7 @@ fn enters(
 ) -> Option<bool> {
     let (slave, mode) = (found.slave, Mode::Free);
     let settings = Settings {
-        search: SearchMode::Off,
+        search: SearchBudget::Mode(SearchMode::Off),
         ..state.controls.settings
     };
     let held = Intervention::Force {

@@ -69,7 +69,7 @@ pub struct FallbackState {
 }
 
 impl Fallback {
-    /// Whether it belongs to the search ([`crate::model::SearchMode`]).
+    /// Whether it belongs to the search ([`crate::model::SearchBudget`]).
     pub(in crate::step) fn searches(self) -> bool {
         matches!(
             self,

@@ -1,7 +1,7 @@
 //! The conditions that recoveries check on a failed increment.
 
 use super::fallback::{DEEPER, Fallback};
-use crate::model::{Body, Factor, Jumps, SearchMode};
+use crate::model::{Body, Factor, Jumps};
 use crate::plane::max_abs;
 use crate::strategy;
 use crate::{Failure, Mode, Model, Singular, Source, State, SubIncrement};
@@ -54,13 +54,8 @@ impl FailedIncrement<'_> {
 
     /// Whether the search may continue with a fallback: not if jumps end the history, or if all bodies are given as matrices.
     pub fn searches(&self, by: Fallback) -> bool {
-        let settings = &self.state.controls.settings;
-        settings.search == SearchMode::Auto
-            && self
-                .state
-                .record
-                .searched
-                .can_afford(by, settings.search_limit)
+        let budget = self.state.controls.settings.search;
+        self.state.record.searched.can_afford(by, budget)
             && self.model.jumps != Jumps::Stop
             && !self.is_given()
     }

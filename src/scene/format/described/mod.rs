@@ -156,7 +156,7 @@ impl Scalar<'_> {
             Scalar::Limit(_) => u32::kind(),
             Scalar::Flag(_) => bool::kind(),
             Scalar::Text(_) => String::kind(),
-            Scalar::Choice(choice) => one_of(choice.names()),
+            Scalar::Choice(choice) => choice.accepts(),
         }
     }
 
@@ -215,6 +215,10 @@ fn one_of(words: &[&str]) -> String {
 pub(crate) trait Choice {
     fn names(&self) -> &'static [&'static str];
     fn name(&self) -> String;
+    /// What may be written.
+    fn accepts(&self) -> String {
+        one_of(self.names())
+    }
     /// Sets the choice with that name, if there is one.
     fn choose(&mut self, name: &str) -> bool;
 }

@@ -11,7 +11,7 @@ use stickslip_core::model::{
 };
 use stickslip_core::{
     BoundUpdate, Component, Control, ElementKind, Friction, InitialGaps, InitialState, Jumps, Law,
-    Mode, Plane, SearchMode, Settings, Strategy, Touch, Update,
+    Mode, Plane, SearchBudget, SearchMode, Settings, Strategy, Touch, Update,
 };
 
 macro_rules! fields {
@@ -93,7 +93,6 @@ fields!(Settings {
     limit_load,
     matrix_accuracy,
     search,
-    search_limit,
     initial_gaps,
     adjust_gap,
     memory,
@@ -114,7 +113,6 @@ words!(
     Plane,
     PointForce,
     Refactor,
-    SearchMode,
     ResidualMethod,
     SlavePoints,
     SlipCount,
@@ -125,3 +123,44 @@ words!(
     Touch,
     Update,
 );
+
+impl Choice for SearchBudget {
+    fn names(&self) -> &'static [&'static str] {
+        words::<SearchMode>()
+    }
+    fn name(&self) -> String {
+        match self {
+            SearchBudget::Mode(mode) => word(mode),
+            SearchBudget::Limit(most) => most.to_string(),
+        }
+    }
+    fn accepts(&self) -> String {
+        Self::kind()
+    }
+    fn choose(&mut self, name: &str) -> bool {
+        let mode = of_word(name).map(SearchBudget::Mode);
+        let limit = || name.parse().ok().map(SearchBudget::Limit);
+        mode.or_else(limit).map(|value| *self = value).is_some()
+    }
+}
+
+impl Described for SearchBudget {
+    fn walk(&mut self, place: &ScalarPlace<'_>, visit: &mut Visit<'_>) {
+        visit(place, Scalar::Choice(self));
+    }
+    fn kind() -> String {
+        format!("{}, or a whole number", one_of(words::<SearchMode>()))
+    }
+    fn blank() -> String {
+        "auto".to_owned()
+    }
+    fn shown(&self) -> String {
+        self.name()
+    }
+    fn types(into: &mut Vec<Type>) -> Result<(), String> {
+        if !contains(into, SearchMode::DOCS.name) {
+            into.push(of_words(&SearchMode::DOCS, words::<SearchMode>()));
+        }
+        Ok(())
+    }
+}

@@ -99,7 +99,20 @@ pub(super) fn of_words(docs: &Docs, words: &[&'static str]) -> Type {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use stickslip_core::model::{Friction, InitialState, Settings};
+    use stickslip_core::model::{Friction, InitialState, SearchBudget, SearchMode, Settings};
+
+    #[test]
+    fn a_budget_of_the_search_is_a_word_or_a_number_also_under_its_former_name() {
+        let of = |text: &str| read_blank::<Settings>(text).map(|settings| settings.search);
+        assert_eq!(of("(search: 3)").unwrap(), SearchBudget::Limit(3));
+        assert_eq!(of("(search_limit: 3)").unwrap(), SearchBudget::Limit(3));
+        assert_eq!(
+            of("(search: off)").unwrap(),
+            SearchBudget::Mode(SearchMode::Off)
+        );
+        let refused = of("(search: -3)").unwrap_err().to_string();
+        assert!(refused.contains("auto, off, or a number"), "{refused}");
+    }
 
     #[test]
     fn omitted_fields_have_their_defaults() {
