@@ -60,7 +60,10 @@ fn fields(form: &Form, all: &[Type]) -> String {
             .unwrap_or_default();
         let words = words(field, all);
         let kind = match words {
-            Some(_) => "one of these words".to_owned(),
+            Some(_) => match field.kind.split_once(", or ") {
+                Some((_, other)) => format!("one of these words, or {other}"),
+                None => "one of these words".to_owned(),
+            },
             None => field.kind.clone(),
         };
         text += format!(
@@ -87,6 +90,7 @@ fn fields(form: &Form, all: &[Type]) -> String {
 /// The allowed words of a field.
 fn words<'a>(field: &Field, all: &'a [Type]) -> Option<&'a [Form]> {
     let listed = field.kind.strip_prefix("one of ")?;
+    let listed = listed.split_once(", or ").map_or(listed, |parts| parts.0);
     let names = |one: &Type| joined(one.forms.iter().filter_map(|form| form.name), ", ");
     all.iter()
         .find(|one| names(one) == listed)

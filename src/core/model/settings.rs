@@ -55,9 +55,8 @@ documented! {
         /// Siconos' sparse matrices.
         #[serde(skip_serializing_if = "is_zero")]
         pub matrix_accuracy: f64,
-        /// Whether the strategy `ladder` searches for other solutions where an increment fails: `auto`, `off`, or the maximum number
-        /// of factorizations that a run spends on such searches. A minor iteration counts as one, a major iteration as one more.
-        /// Default: auto.
+        /// Whether the strategy `ladder` searches for other solutions where an increment fails. A number limits the factorizations
+        /// that a run spends on such searches: a minor iteration counts as one, a major iteration as one more. Default: auto.
         #[serde(skip_serializing_if = "is_default", alias = "search_limit")]
         pub search: SearchBudget,
         /// How gaps before the first increment are treated. Default: keep.
@@ -241,8 +240,8 @@ documented! {
     pub choice SearchMode {
         /// After the strategies and the other parts of the increment: contacts near each other at the start are closed, the increment is cut
         /// below its least size, where equilibrium ends the nodes move damped to the next one, and at last parts of
-        /// twice the increment are tried. The last two are marked. The limit is 4 times the factorizations of the rest of the run,
-        /// and 5 times for parts of twice the increment.
+        /// twice the increment are tried. The last two are marked. At most 4 times the factorizations of the rest of the run are
+        /// spent, 5 times with parts of twice the increment.
         #[default]
         Auto,
         /// The increment fails.
