@@ -4,6 +4,7 @@ use super::base::{Error, usage};
 use super::sink::Sink;
 use serde::Serialize;
 use std::fmt::Write;
+use std::path::Path;
 use stickslip_platform::files::Output;
 use stickslip_scene::shown;
 
@@ -30,8 +31,19 @@ impl JsonArgs {
     /// # Errors
     /// If the file exists and must not be overwritten, or cannot be written.
     pub fn open(&self, overwrite: bool) -> Result<Option<Sink>, Error> {
+        if let Some(file) = self.to().filter(|file| is_input(file)) {
+            return Err(usage!(
+                "--json {file}: a word after --json names the file to write, and this name is that of a scene, deck or snapshot; write --json behind it"
+            ));
+        }
         self.to().map(|to| Sink::open(to, overwrite)).transpose()
     }
+}
+
+/// Whether a file has the extension of one that the program reads, and never of JSON.
+fn is_input(file: &str) -> bool {
+    let extension = Path::new(file).extension();
+    extension.is_some_and(|own| own == "ron" || own == "inp")
 }
 
 /// Writes a record whole, if it is requested.

@@ -1,6 +1,6 @@
 //! `stickslip replay`: recomputes snapshots, and compares.
 
-use super::base::{Error, Exit, distinct, notify, say, scene_instead, tolerance};
+use super::base::{Error, Exit, distinct, notify, say, scene_instead, tolerance, usage};
 use super::json::{self, JsonArgs};
 use super::junit::{self, TestCase, TestResult};
 use super::records::{DifferenceRecord, ReplayRecord, ReplayedRecord};
@@ -65,6 +65,13 @@ impl ReplayResult {
 pub fn main(args: &Args) -> Result<Exit, Error> {
     let junit = args.junit.as_deref();
     distinct(&[("--json", args.json.to()), ("--junit", junit)])?;
+    for to in [args.json.to(), junit].into_iter().flatten() {
+        if args.files.iter().any(|file| file == Path::new(to)) {
+            return Err(usage!(
+                "{to} is a snapshot to replay; the result needs another file"
+            ));
+        }
+    }
     let says = !args.json.is_on_standard_output() && junit != Some("-");
     let json = args.json.open(args.force)?;
     let junit = junit.map(|to| Sink::open(to, args.force)).transpose()?;

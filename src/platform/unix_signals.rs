@@ -2,7 +2,7 @@
 
 use rustix::process::Signal;
 use rustix::termios::{OptionalActions, SpecialCodeIndex, tcgetattr, tcsetattr};
-use signal_hook::consts::{SIGCONT, SIGHUP, SIGINT, SIGTERM, SIGTSTP, SIGTTIN, SIGXFSZ};
+use signal_hook::consts::{SIGCONT, SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGTSTP, SIGTTIN, SIGXFSZ};
 use signal_hook::iterator::Handle;
 use signal_hook::{SigId, flag, low_level};
 use std::io::{self, stdin};
@@ -84,7 +84,7 @@ fn watch<G>(end: &Arc<AtomicUsize>, restore: fn() -> G) -> io::Result<Handle>
 where
     G: 'static,
 {
-    let mut signals = signal_hook::iterator::Signals::new([SIGTERM, SIGINT, SIGHUP])?;
+    let mut signals = signal_hook::iterator::Signals::new([SIGTERM, SIGINT, SIGHUP, SIGQUIT])?;
     let handle = signals.handle();
     let end = Arc::clone(end);
     thread::spawn(move || {

@@ -1,7 +1,7 @@
 //! Takes over the terminal, and restores it in every case.
 //!
 //! The terminal is restored when [`Terminal`] is dropped (at the end or on an error), by the panic hook (before the message is
-//! printed, so that it is readable), and before the process obeys SIGTERM, SIGINT or SIGHUP. Ctrl-Z and SIGTSTP restore it, stop
+//! printed, so that it is readable), and before the process obeys SIGTERM, SIGINT, SIGHUP or SIGQUIT. Ctrl-Z and SIGTSTP restore it, stop
 //! the process as the shell expects, and take it over again with a full redraw when the process continues. A lock serialises taking
 //! over and restoring, so a signal in between cannot leave either incomplete.
 

@@ -404,6 +404,32 @@ fn an_audit_agrees_with_its_table_and_marked_increments_do_not_count() {
 }
 
 #[test]
+fn a_replay_writes_its_result_over_no_snapshot_even_by_force() {
+    let folder = tempfile::tempdir().unwrap();
+    let copy = folder.path().join("a.ron");
+    fs::copy(top().join(SNAPSHOT), &copy).unwrap();
+    let file = copy.to_str().unwrap();
+    for (line, says) in [
+        (
+            ["replay", "--force", "--json", file, SNAPSHOT],
+            "write --json behind it",
+        ),
+        (
+            ["replay", "--force", file, "--junit", file],
+            "needs another file",
+        ),
+    ] {
+        let refused = ran(&line);
+        assert_eq!(code(&refused), 2, "{line:?}");
+        assert!(err(&refused).contains(says), "{}", err(&refused));
+        assert_eq!(
+            fs::read(&copy).unwrap(),
+            fs::read(top().join(SNAPSHOT)).unwrap()
+        );
+    }
+}
+
+#[test]
 fn a_replay_names_what_differs_as_json_and_as_junit() {
     let folder = tempfile::tempdir().unwrap();
     let changed = changed(folder.path());

@@ -211,7 +211,7 @@ fn branches_are_renamed_and_wrong_names_are_told() {
 }
 
 #[test]
-fn ends_are_judged_as_cycle_same_cycle_accepted_same_state_and_running() {
+fn ends_are_judged_as_cycle_same_cycle_accepted_same_state_and_unfinished() {
     let mut session = session(OSCILLATES);
     forward(&mut session, Unit::Run, 1);
     submit(&mut session, Command::Goto { step: 1 });
@@ -227,7 +227,7 @@ fn ends_are_judged_as_cycle_same_cycle_accepted_same_state_and_running() {
         branch(&mut session, "b1");
         submit(&mut session, Command::Goto { step: step - 1 });
         force(&mut session, Mode::Sliding);
-        assert_eq!(verdicts(&session).last(), Some(&BranchEnd::Running));
+        assert_eq!(verdicts(&session).last(), Some(&BranchEnd::Unfinished));
         forward(&mut session, Unit::Run, 1);
     }
     assert_eq!(
@@ -293,6 +293,21 @@ fn branches_are_compared_at_their_tips_and_at_the_last_load_that_both_reached() 
         session.timeline().compare(0, 2).and_then(|c| c.sameness),
         Some(Sameness::Different)
     );
+}
+
+#[test]
+fn minor_iterations_of_one_major_with_other_forces_are_different_states() {
+    let table2 = [("settings.strategy".to_owned(), "table2".to_owned())];
+    let mut session = Session::new(Scene::open(OSCILLATES, &table2).expect("a built-in scene"));
+    forward(&mut session, Unit::Run, 1);
+    back(&mut session, Unit::Minor, 2);
+    force(&mut session, Mode::Sliding);
+    forward(&mut session, Unit::Minor, 2);
+    let found = session.timeline().compare(0, 1).expect("two branches");
+    let [a, b] = found.common.as_ref().expect("a common place");
+    let forces = |side: &stickslip::history::compare::Side| side.nodes[0].forces.expect("solved");
+    assert_ne!(forces(a), forces(b));
+    assert_eq!(found.sameness, Some(Sameness::Different));
 }
 
 #[test]

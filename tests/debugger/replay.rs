@@ -87,6 +87,31 @@ fn numbers_that_are_none_and_extreme_ones_survive() {
     }
 }
 
+#[test]
+fn a_changed_force_scale_or_limit_and_a_repeated_row_are_differences() {
+    let file = recorded().swap_remove(0);
+    let snapshot = Snapshot::read(&file).unwrap();
+    let changes: [(&str, fn(&mut Snapshot)); 3] = [
+        ("residual before, force scale", |snapshot| {
+            snapshot.state.before.as_mut().unwrap().scale = 1e9;
+        }),
+        ("residual before, limit", |snapshot| {
+            snapshot.state.before.as_mut().unwrap().limit = 1e-3;
+        }),
+        ("number of slave nodes", |snapshot| {
+            let row = snapshot.state.slaves[0].clone();
+            snapshot.state.slaves.push(row);
+        }),
+    ];
+    for (field, change) in changes {
+        let mut changed = snapshot.clone();
+        change(&mut changed);
+        let found = compare(&changed, &snapshot);
+        assert_eq!(found.rows.len(), 1, "{field}: {found}");
+        assert_eq!(found.rows[0].field, field);
+    }
+}
+
 /// A session of random lines on a scene; the lines, and the snapshot after each that changed anything.
 fn random_session(scene_name: &str, seed: u64, file: &std::path::Path) -> Vec<(String, Snapshot)> {
     const MODES: [&str; 3] = ["free", "sliding", "fixed"];

@@ -14,7 +14,7 @@ use stickslip::step::stepper::Stepper;
 const MOST: usize = 60_000;
 
 /// Causes that no other iteration can remove: the path ends, or no modes are consistent.
-const ENDS: [&str; 2] = ["limit load: ", "so no iteration can find any"];
+const ENDS: [&str; 2] = ["limit load: ", "so no strategy can settle there"];
 
 /// A state exists, but not for the scene's strategy.
 const EXISTS: &str = "a state exists at this load";
@@ -109,7 +109,7 @@ fn faults(page: &DiagnosisPage) -> Vec<String> {
     let nothing = page
         .why
         .iter()
-        .find(|why| why.contains("so no iteration can find any"));
+        .find(|why| why.contains("so no strategy can settle there"));
     let is_choice = |line: &&TryLine| {
         line.command().starts_with(":start-from") || line.words().starts_with("forcing a node")
     };

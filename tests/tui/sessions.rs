@@ -364,6 +364,7 @@ fn a_signal_that_ends_it_restores_the_terminal_and_is_seen_by_the_parent() {
         ("TERM", "Terminated"),
         ("HUP", "Hangup"),
         ("INT", "Interrupt"),
+        ("QUIT", "Quit"),
     ] {
         for mut session in [open(FLOOR), long_run()] {
             session.see_taken();

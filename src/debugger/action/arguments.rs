@@ -151,8 +151,8 @@ impl ActionEntry {
                     [word] => match number(word) {
                         None => Err(Refusal::no_value(
                             word,
-                            "factor from 1 to 1e9",
-                            self.usage(),
+                            "factor",
+                            "expected a number from 1 to 1e9",
                         )),
                         factor => ui(Ui::Magnify(factor)),
                     },

@@ -457,7 +457,7 @@ fn cause_words<'a>(
             format!("no modes of {nodes} are consistent with all other nodes frozen")
         }
         Cause::NoAnswer => format!(
-            "no modes of {nodes} are consistent in this increment, so no iteration can find any"
+            "no modes of {nodes} are consistent in the linearised problem of this major iteration, so no strategy can settle there"
         ),
         Cause::NoWayToSliding(sliding) => {
             let sliding: Vec<&str> = sliding.iter().map(|&place| name(place)).collect();

@@ -454,7 +454,10 @@ pub fn intervention(model: &Model, intervention: &Intervention) -> String {
         }
         Intervention::Release { slave: s } => format!("{} follows Table 2 again", slave(model, *s)),
         Intervention::Increment(increment) => {
-            format!("the increment restarts with size {}", shortest(*increment))
+            format!(
+                "the increment that comes next has size {}",
+                shortest(*increment)
+            )
         }
         Intervention::Friction(f) => format!(
             "friction angle {} degrees, cohesion {}",

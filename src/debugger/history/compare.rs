@@ -2,15 +2,16 @@
 //!
 //! The common point is the last load at which both accepted an increment after the fork (on the same leg, if
 //! the load path reverses). If there is none, it is the last minor iteration at the same position. Two states
-//! are the same if displacements differ by less than [`SAME_STATE`] of the scene's length, and forces by less
-//! than [`SAME_STATE`] of the larger branch's largest force. Modes of equal states can differ only in ties and
-//! are listed separately.
+//! are the same if displacements and gaps differ by less than [`SAME_STATE`] of the scene's length, and forces
+//! by less than [`SAME_STATE`] of the larger branch's largest force; within a major iteration, in which
+//! displacements do not change yet, gaps and forces are those of the minor iteration. Modes of equal states can
+//! differ only in ties and are listed separately.
 
 use crate::explain::names;
 use crate::history::branches::{self, Cost};
 use crate::history::breakpoints::RunPlace;
 use crate::{Frame, Strip, Tree};
-use stickslip_core::{Mode, Model};
+use stickslip_core::{ContactRecord, ContactState, Mode, Model};
 use stickslip_scene::{first_of, shortest, sig2};
 
 /// Relative difference below which two states are the same.
@@ -161,21 +162,24 @@ fn same(tree: &Tree, a: (usize, usize), b: (usize, usize)) -> Option<Sameness> {
                 .zip(y)
                 .any(|(x, y)| (x - y).abs() > SAME_STATE * size)
     };
-    let forces = |frame: &Frame| -> Vec<f64> {
-        frame
-            .state
-            .nodes
-            .iter()
-            .flat_map(stickslip_core::ContactState::force)
+    let solved = |frame: &Frame| frame.event.clone().map_or(Vec::new(), |e| e.nodes.clone());
+    let (solved_x, solved_y) = (solved(x), solved(y));
+    let forces = |frame: &Frame, solved: &[ContactRecord]| -> Vec<f64> {
+        let held = frame.state.nodes.iter().flat_map(ContactState::force);
+        held.chain(solved.iter().flat_map(|node| [node.f_n, node.f_t]))
             .collect()
     };
-    let (f, g) = (forces(x), forces(y));
+    let gaps =
+        |solved: &[ContactRecord]| -> Vec<f64> { solved.iter().map(|node| node.gap).collect() };
+    let (f, g) = (forces(x, &solved_x), forces(y, &solved_y));
     let scale = |frame: &Frame| frame.event.as_ref().map_or(0.0, |event| event.before.scale);
     let largest = f
         .iter()
         .chain(&g)
         .fold(scale(x).max(scale(y)), |m, f| m.max(f.abs()));
-    let moved = apart(&x.state.u, &y.state.u, tree.model().length);
+    let length = tree.model().length;
+    let moved =
+        apart(&x.state.u, &y.state.u, length) || apart(&gaps(&solved_x), &gaps(&solved_y), length);
     Some(if moved || apart(&f, &g, largest) {
         Sameness::Different
     } else {

@@ -12,7 +12,7 @@ use stickslip_scene::shortest;
 #[derive(Debug, Clone, PartialEq)]
 pub enum BranchEnd {
     /// Inside an increment, or before the first iteration.
-    Running,
+    Unfinished,
     /// At an accepted increment that no other branch has reached.
     Accepted,
     /// Displacements and forces equal those of an earlier branch at the same load.
@@ -95,7 +95,7 @@ fn summary(tree: &Tree, number: usize) -> Option<Summary> {
 /// reference.
 pub fn verdict(tree: &Tree, branch: usize) -> BranchEnd {
     let Some((frame, tip)) = tree.tip(branch) else {
-        return BranchEnd::Running;
+        return BranchEnd::Unfinished;
     };
     let others = || (0..tree.branches().len()).filter(|&other| other < branch);
     match tip.kind {
@@ -106,7 +106,7 @@ pub fn verdict(tree: &Tree, branch: usize) -> BranchEnd {
         | PointKind::Climbed
         | PointKind::Cut
         | PointKind::Refused
-        | PointKind::Major => BranchEnd::Running,
+        | PointKind::Major => BranchEnd::Unfinished,
         PointKind::Cycle => {
             let own = cycle(frame);
             let same = |&other: &usize| {
@@ -198,7 +198,7 @@ pub(crate) fn is_same_cycle(a: &Cycle, b: &Cycle) -> bool {
 pub fn describe(tree: &Tree, verdict: &BranchEnd) -> String {
     let b = |branch: &usize| format!("b{}", branch + 1);
     match verdict {
-        BranchEnd::Running => "running".into(),
+        BranchEnd::Unfinished => "unfinished".into(),
         BranchEnd::Accepted => "accepted".into(),
         BranchEnd::Marked => "accepted, but fails the check".into(),
         BranchEnd::Same { branch, load } => {

@@ -1,7 +1,7 @@
 //! Compares two snapshots, node by node.
 //!
-//! Compared exactly: position, number of minor iterations, status, modes, rules, forced modes, interventions,
-//! and the scalars of the scenes. Numbers may differ by 1e-9 of their scale, because another processor may sum
+//! Compared exactly: position, numbers of minor iterations and nodes, status, modes, rules, forced modes,
+//! interventions, the limit of the residual, and the scalars of the scenes. Numbers may differ by 1e-9 of their scale, because another processor may sum
 //! in another order. The scale is the force scale of the residual norms for forces, the diagonal of the scene's
 //! bodies for lengths, and 1 for rotations and for residuals, which are relative already; or the number itself,
 //! if that is larger. NaN equals NaN. Names of scenes are not compared.
@@ -76,7 +76,7 @@ fn exact(field: &'static str, value: impl Debug) -> Field {
     text(field, word(value))
 }
 
-fn text(field: &'static str, value: impl Into<Cow<'static, str>>) -> Field {
+fn text(field: impl Into<Cow<'static, str>>, value: impl Into<Cow<'static, str>>) -> Field {
     (field.into(), FieldValue::Text(value.into()))
 }
 
@@ -106,6 +106,7 @@ pub fn compare_within(a: &Snapshot, b: &Snapshot, tolerance: f64) -> Differences
     found.scenes(a, b);
     let (left, right) = (&a.state, &b.state);
     found.fields(None, run(a), run(b));
+    found.fields(None, counts(left), counts(right));
     for (when, a, b) in [
         ("residual before", &left.before, &right.before),
         ("residual after", &left.after, &right.after),
@@ -133,6 +134,14 @@ fn run(snapshot: &Snapshot) -> Vec<Field> {
     ]
 }
 
+/// Numbers of rows. Rows are compared by name, so that a repeated one would replace the one before.
+fn counts(state: &Recorded) -> Vec<Field> {
+    vec![
+        exact("number of slave nodes", state.slaves.len()),
+        exact("number of nodes", state.displacements.len()),
+    ]
+}
+
 fn norms(when: &'static str, norms: &Option<Norms>) -> Vec<Field> {
     let numbers = norms.as_ref().map(|norms| {
         [
@@ -140,13 +149,18 @@ fn norms(when: &'static str, norms: &Option<Norms>) -> Vec<Field> {
             ("relative", norms.relative, Ratio),
             ("interface", norms.interface, Ratio),
             ("correction", norms.correction, Ratio),
+            ("force scale", norms.scale, Force),
         ]
     });
+    let limit = norms
+        .as_ref()
+        .map(|norms| text(format!("{when}, limit"), sig2(norms.limit)));
     let numbers = numbers.into_iter().flatten();
     let numbers = numbers.map(|(what, value, of)| number(format!("{when}, {what}"), value, of));
-    [exact(when, norms.is_some())]
+    [text(when, norms.as_ref().map_or(ABSENT, |_| THERE))]
         .into_iter()
         .chain(numbers)
+        .chain(limit)
         .collect()
 }
 
@@ -225,7 +239,7 @@ impl Differences {
             match pair {
                 (Some(left), Some(right)) => self.fields(Some(node), fields(left), fields(right)),
                 (left, right) => {
-                    let [left, right] = [left, right].map(|own| own.map_or(ABSENT, |_| "there"));
+                    let [left, right] = [left, right].map(|own| own.map_or(ABSENT, |_| THERE));
                     self.text(Some(node), kind, left, right);
                 }
             }
@@ -296,6 +310,7 @@ impl Differences {
 }
 
 const ABSENT: &str = "-";
+const THERE: &str = "there";
 
 /// The name of a value: `Some(FixedSlides)` gives `FixedSlides`.
 fn word(value: impl Debug) -> String {

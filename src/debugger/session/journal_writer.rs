@@ -2,6 +2,7 @@
 
 use crate::record::journal::{Entry, Journal, JournalError};
 use crate::refusal::{Refusal, refusal};
+use std::fmt::Display;
 use std::path::{Path, PathBuf};
 use stickslip_core::counted;
 use stickslip_scene::Scene;
@@ -133,7 +134,11 @@ impl JournalWriter {
                     self.entries.len()
                 );
             }
-            Err(error) => self.lose("the journal was deleted or replaced", &error),
+            Err(JournalError::Exists(path)) => {
+                let error = format!("{}: another file has replaced it", path.display());
+                self.lose("the journal was replaced", &error);
+            }
+            Err(error) => self.lose("the journal was deleted", &error),
         }
     }
 
@@ -164,7 +169,7 @@ impl JournalWriter {
         }
     }
 
-    fn lose(&mut self, what: &str, error: &JournalError) {
+    fn lose(&mut self, what: &str, error: &dyn Display) {
         self.to = Lost(error.to_string());
         self.trouble =
             format!("; {what}: {error}; :journal FILE starts a new one with all entries");

@@ -126,10 +126,10 @@ fn uses(aid: Aid, frames: &[Frame]) -> bool {
 
 /// What a task excludes, in words; empty if nothing.
 fn without(aids: &[Aid]) -> String {
-    let words = joined(aids.iter().map(|aid| aid.words()), ", ");
-    if words.is_empty() {
-        String::new()
-    } else {
-        format!(" without {words}")
+    let words: Vec<&str> = aids.iter().map(|aid| aid.words()).collect();
+    match words.split_last() {
+        None => String::new(),
+        Some((only, [])) => format!(" without {only}"),
+        Some((last, others)) => format!(" without {} or {last}", joined(others, ", ")),
     }
 }

@@ -59,10 +59,19 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let order = verdicts::order(&all);
     let width = usize::from(inner.width);
     let (shown, compared) = shown(inner, tree, &all, (app, view));
+    let texts: Vec<RowTexts> = order
+        .iter()
+        .map(|&(number, depth)| RowTexts::new(&all[number], depth, view))
+        .collect();
+    let widest = |width: fn(&RowTexts) -> usize| texts.iter().map(width).max().unwrap_or(0);
+    // Columns of all rows, also of those that are scrolled out.
+    let room = width.saturating_sub(widest(|texts| texts.cost.width()) + 7);
+    let names = widest(|texts| texts.name.width()).min(room * 3 / 5);
     let mut lines: Vec<Line> = shown
         .map(|row| {
-            let (number, depth) = order[row];
-            line(tree, &all[number], depth, row == at, width, (app, view))
+            let branch = &all[order[row].0];
+            let columns = [names, room - names];
+            line(tree, branch, &texts[row], row == at, columns, app)
         })
         .collect();
     if all.len() == 1 && !view.is_finished() {
@@ -98,33 +107,46 @@ pub fn row_at(area: Rect, app: &App, view: &View, at: Position) -> Option<usize>
     (row < rows).then_some(shown.start + row)
 }
 
+/// The texts of a row that set the widths of the columns.
+struct RowTexts {
+    /// The name, behind its place in the tree.
+    name: String,
+    cost: String,
+}
+
+impl RowTexts {
+    fn new(branch: &Summary, depth: usize, view: &View) -> RowTexts {
+        let twig = match depth {
+            0 => String::new(),
+            depth => format!("{}└ ", "  ".repeat(depth - 1)),
+        };
+        let load = number::shortest(branch.load_factor);
+        let (minors, majors) = (branch.whole.minors, branch.whole.majors);
+        RowTexts {
+            name: format!("{twig}{}", branch.name),
+            cost: match view.model.finished {
+                None => format!("  load {load}  {minors} minor, {majors} major"),
+                Some(_) => format!("  time {load}  {minors} iterations"),
+            },
+        }
+    }
+}
+
 fn line<'a>(
     tree: &Tree,
     branch: &Summary,
-    depth: usize,
+    texts: &RowTexts,
     selected: bool,
-    width: usize,
-    (app, view): (&App, &View),
+    [names, room]: [usize; 2],
+    app: &App,
 ) -> Line<'a> {
     let theme = &app.theme;
-    let twig = match depth {
-        0 => String::new(),
-        depth => format!("{}└ ", "  ".repeat(depth - 1)),
-    };
     let current = if branch.is_current { "●" } else { " " };
     let (glyph, style) = glyph(&branch.verdict, app);
     let verdict = verdicts::describe(tree, &branch.verdict);
-    let load = number::shortest(branch.load_factor);
-    let (minors, majors) = (branch.whole.minors, branch.whole.majors);
-    let cost = match view.model.finished {
-        None => format!("  load {load}  {minors} minor, {majors} major"),
-        Some(_) => format!("  time {load}  {minors} iterations"),
-    };
-    let room = width.saturating_sub(cost.width() + 4);
-    let names = room * 3 / 5;
     let name_style = if selected { theme.selected } else { theme.text };
-    let [name, pad] = paint::cell(&format!("{twig}{}", branch.name), names, name_style);
-    let [verdict, verdict_pad] = paint::cell(&verdict, (room - names).saturating_sub(3), style);
+    let [name, pad] = paint::cell(&texts.name, names, name_style);
+    let [verdict, verdict_pad] = paint::cell(&verdict, room, style);
     Line::from(vec![
         paint::cursor(selected, theme),
         Span::styled(current, theme.strong),
@@ -135,14 +157,14 @@ fn line<'a>(
         Span::styled(format!("{glyph} "), style),
         verdict,
         verdict_pad,
-        Span::styled(cost, theme.faint),
+        Span::styled(texts.cost.clone(), theme.faint),
     ])
 }
 
 fn glyph(verdict: &BranchEnd, app: &App) -> (&'static str, Style) {
     let theme = &app.theme;
     match verdict {
-        BranchEnd::Running => ("▸", theme.text),
+        BranchEnd::Unfinished => ("▸", theme.text),
         BranchEnd::Accepted | BranchEnd::Same { .. } => ("✓", theme.good),
         BranchEnd::Marked => ("!", theme.warning),
         BranchEnd::Other { .. } => ("≠", theme.warning),

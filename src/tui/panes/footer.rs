@@ -88,9 +88,16 @@ fn message(app: &App, view: Option<&View>, places: &ScreenAreas, width: usize) -
         return vec![Line::styled(format!(" {count} ×"), theme.key)];
     }
     let has_pane = places.panes.iter().any(|(pane, _)| *pane == Pane::Lesson);
-    let shown = has_pane && !matches!(app.overlay, Overlay::Chart(_));
+    let covered = matches!(app.overlay, Overlay::Chart(_));
+    let shown = has_pane && !covered;
     if let (false, "", Some(tutor)) = (shown, app.message.text.as_str(), &app.learning.lesson) {
-        return wrapped(&format!("▶ {}", tutor.todo()), width, theme.key);
+        // The keys of the lesson work behind the chart only.
+        let first = if covered {
+            "Esc closes the chart, then: "
+        } else {
+            ""
+        };
+        return wrapped(&format!("▶ {first}{}", tutor.todo()), width, theme.key);
     }
     let mut lines = message_lines(app, view, width);
     if let Some(notice) = &app.notice {
