@@ -163,7 +163,7 @@ fn a_journal_deleted_under_the_session_is_written_again_whole_and_the_user_is_to
         .expect("gone")
         .0;
     assert!(
-        reply.contains("deleted or replaced") && reply.contains(":journal FILE"),
+        reply.contains("another file has replaced it") && reply.contains(":journal FILE"),
         "{reply}"
     );
     assert!(kept.session.journal().lost().is_some());
