@@ -309,6 +309,27 @@ fn nodes_are_where_the_state_has_them_and_slave_nodes_say_what_was_found() {
     assert_eq!(slaves + others, model.nodes.len());
 }
 
+/// A loose tolerance leaves a last correction in which the surface still turns.
+#[test]
+fn contact_forces_of_an_accepted_state_are_along_its_own_directions() {
+    let loose = [("settings.tolerance", "1e-3")];
+    let (stepper, grid, found) = at_the_end("05-cantilever-elastic-block", &loose);
+    assert_eq!(stepper.state().status, Status::Finished);
+    let force = numbers(&grid.on_points, "contact_force");
+    let mut turned = 0;
+    for (slave, record) in found.iter().enumerate() {
+        let (node, state) = (
+            stepper.model().contacts[slave].node,
+            &stepper.state().nodes[slave],
+        );
+        let ([c, s], f_n, f_t) = (state.normal, record.f_n, record.f_t);
+        let expected = [c * f_n - s * f_t, s * f_n + c * f_t];
+        assert_eq!(force[3 * node..3 * node + 2], expected);
+        turned += usize::from(f_n > 0.0 && record.normal != state.normal);
+    }
+    assert!(turned > 0);
+}
+
 #[test]
 fn bodies_and_surfaces_are_cells_that_say_whose_they_are() {
     let (stepper, grid, _) = at_the_end(BLOCK, &[]);

@@ -592,3 +592,53 @@ fn a_corner_of_two_rigid_surfaces_refuses_what_gives_way() {
     spec.slaves[0].law = stickslip::format::contact_law::ContactLaw::Hard;
     assert!(Scene::from_spec("node", spec).is_ok());
 }
+
+/// Nodes that stick between linear bodies balance in one major iteration, along whatever directions it was solved; the surface turns in it.
+#[test]
+fn the_forces_of_stuck_nodes_are_components_along_the_directions_of_the_accepted_state() {
+    let scene = read(STUCK);
+    let run = finished(&scene);
+    for accepted in &run.accepted {
+        let event = &accepted.event;
+        let largest = event.nodes.iter().map(|record| record.f_n);
+        let scale = largest.fold(0.0, f64::max);
+        for (slave, record) in event.nodes.iter().enumerate() {
+            let node = &accepted.state.nodes[slave];
+            assert_eq!(record.decision.before, Mode::Fixed);
+            let differs = (record.f_n - node.f_n).hypot(record.f_t - node.f_t);
+            assert!(differs < 1e-8 * scale, "{slave}: {differs} of {scale}");
+        }
+    }
+    let [x, y] = ["x", "y"].map(|monitor| common::last(&run, monitor));
+    let slave = &run.accepted.last().unwrap().event.nodes[0];
+    let normal = slave.f_n.hypot(slave.f_t);
+    assert!((normal - x.hypot(y)).abs() < 1e-8 * normal);
+    assert!(
+        slave.f_t.abs() < 0.999 * x,
+        "the surface has turned under the node: {} {x}",
+        slave.f_t
+    );
+}
+
+const STUCK: &str = r#"(
+    title: "Two blocks of small strains, pressed and then sheared",
+    nodes: [
+        Block(id: "a", corners: [(0.0, 0.0), (1.0, 1.0)], elements: (2, 1), element: quad4),
+        Block(id: "b", corners: [(-0.5, -1.0), (1.5, 0.0)], elements: (3, 1), element: quad4),
+    ],
+    materials: [Elastic(id: "soft", E: 100.0, nu: 0.3, update: small)],
+    bodies: [Solid(id: "a", mesh: "a", material: "soft"), Solid(id: "b", mesh: "b", material: "soft")],
+    surfaces: [(id: "top", along: "b.top")],
+    slaves: [(nodes: ["a.bottom"], on: ["top"], start: fixed)],
+    friction: (angle: 60.0),
+    supports: [(node: "b.bottom", fix: [x, y])],
+    loads: [
+        Displacement(node: "a.top", component: y, value: -0.02, scale: [(0.0, 0.0), (1.0, 1.0)]),
+        Displacement(node: "a.top", component: x, value: 0.01, scale: [(1.0, 0.0), (2.0, 1.0)]),
+    ],
+    history: (path: [0.0, 1.0, 2.0], increment: 1.0),
+    monitors: [
+        (name: "x", of: Contact(node: "a.1", component: x)),
+        (name: "y", of: Contact(node: "a.1", component: y)),
+    ],
+)"#;

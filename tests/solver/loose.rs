@@ -4,6 +4,7 @@ use crate::common::{Run, run, scene};
 use crate::program::{code, err, program};
 use stickslip::explain::step_size_probe::smaller;
 use stickslip::linear::singular::Singular;
+use stickslip::model::Mode;
 use stickslip::scene::Scene;
 use stickslip::step::event::Failure;
 use stickslip::step::intervene::Intervention;
@@ -135,4 +136,52 @@ fn the_program_gives_no_advice_that_does_not_help() {
         "{told}"
     );
     assert!(!told.contains(none), "{told}");
+}
+
+/// Eigenvalues of the stiffness: two of order 1e-3, and two zeros that round-off made 1e-20. Only a contact holds the body.
+#[test]
+fn a_body_that_is_loose_up_to_round_off_is_held_by_its_contact() {
+    let text = r#"Contacts(title: "loose",
+        contacts: [
+            (id: "a", friction: (angle: 45.0), load: (-1.0979784550410603e-6, 2.949249577826172e-7)),
+            (id: "b", gap: 8.212084405930568e-4, load: (-7.872461020555568e-7, 1.3095376610763624e-6)),
+        ],
+        matrix: Stiffness([
+            [0.0015739924332054563, -0.0010002319980788033, -6.249963515199476e-05, -0.00012571326923745179],
+            [-0.0010002319980788033, 0.0007374775179655286, -1.986954802157398e-05, 0.0005561444522625353],
+            [-6.249963515199476e-05, -1.986954802157398e-05, 3.7340346259746724e-05, -0.0002736228352150675],
+            [-0.00012571326923745179, 0.0005561444522625353, -0.0002736228352150675, 0.00223692414777961],
+        ]))"#;
+    let run = run(&Scene::from_text("loose.ron", text, &[]).unwrap());
+    assert!(run.failure.is_none(), "{:?}", run.failure);
+    let end = run.accepted.last().expect("an increment");
+    let modes = end.event.nodes.iter().map(|r| r.decision.before);
+    assert_eq!(modes.collect::<Vec<_>>(), [Mode::Fixed, Mode::Sliding]);
+    let b = &end.event.nodes[1];
+    assert!(end.load == 1.0 && b.gap.abs() < 1e-12 && b.f_n > 1e-7 && b.f_t == 0.0);
+}
+
+/// The second contact grazes the floor without force, and W has no unique answer there; a compliance needs no support.
+#[test]
+fn a_body_given_by_its_compliance_may_be_without_contact_pressure() {
+    let text = r#"Contacts(title: "grazing",
+        contacts: [
+            (id: "a", friction: (angle: 5.710593137499643), load: (-1.0, 1.0)),
+            (id: "b", friction: (angle: 5.710593137499643), load: (0.0, -1.0)),
+        ],
+        matrix: Compliance([
+            [3.0, 0.0, 1.0, -1.0],
+            [0.0, 2.0, -1.0, 1.0],
+            [1.0, -1.0, 2.0, -2.0],
+            [-1.0, 1.0, -2.0, 2.0],
+        ]),
+        history: (path: [0.0, 1.0, -0.5], increment: 1.0))"#;
+    let run = run(&Scene::from_text("grazing.ron", text, &[]).unwrap());
+    assert!(run.failure.is_none(), "{:?}", run.failure);
+    let end = &run.accepted.last().expect("an increment").event.nodes;
+    assert!(
+        end.iter()
+            .all(|record| record.f_n == 0.0 && record.gap >= 0.0)
+    );
+    assert!((end[0].gap - 1.0).abs() < 1e-12);
 }

@@ -194,7 +194,31 @@ impl Sweep<3> {
         self.forces.copy_from_slice(forces);
         self.nodes = friction.iter().map(SingleNode::with_friction).collect();
         self.back = sweeps % 2 == 1;
-        self.settle(tolerance)
+        let error = self.settle(tolerance);
+        // Parts that obey the law are not swept, which would find the modes.
+        for place in 0..self.nodes.len() {
+            self.nodes[place].does = self.mode_of_force(place);
+        }
+        error
+    }
+
+    /// The mode of a node whose force obeys the law.
+    fn mode_of_force(&self, place: usize) -> AssumedMode {
+        let f_n = self.forces[3 * place];
+        let [t_1, t_2] = self.trial(place);
+        match t_1.hypot(t_2) > self.nodes[place].limit(f_n) {
+            _ if f_n <= 0.0 => AssumedMode::Free,
+            true => AssumedMode::Plus,
+            false => AssumedMode::Fixed,
+        }
+    }
+
+    /// The tangential force from which the natural map limits to the friction cone.
+    fn trial(&self, place: usize) -> [f64; 2] {
+        let own = self.compliance.own(place);
+        let (force, motion) = (&self.forces[3 * place..], &self.motions[3 * place..]);
+        let tt = 0.5 * (own[1][1] + own[2][2]);
+        [1, 2].map(|k| force[k] - stopping_force(motion[k], tt))
     }
 }
 
@@ -324,24 +348,27 @@ where
     }
 }
 
+/// The force that stops a motion of a node with this compliance; none stops a motion without compliance.
+fn stopping_force(motion: f64, own: f64) -> f64 {
+    if own > 0.0 { motion / own } else { 0.0 }
+}
+
 impl LocalLaw<2> for Sweep<2> {
     fn natural(&self, place: usize) -> f64 {
         let node = &self.nodes[place];
         let (f_n, f_t) = (self.forces[2 * place], self.forces[2 * place + 1]);
         let [e_n, e_t] = [self.motions[2 * place], self.motions[2 * place + 1]];
         let &[[nn, _], [_, tt]] = self.compliance.own(place);
-        // A motion without compliance has no force that stops it.
-        let by = |motion: f64, own: f64| if own > 0.0 { motion / own } else { 0.0 };
         let normal = match node.presses {
             true if nn <= 0.0 && e_n < 0.0 => f64::INFINITY,
-            true => f_n - (f_n - by(e_n, nn)).max(0.0),
+            true => f_n - (f_n - stopping_force(e_n, nn)).max(0.0),
             false => f_n,
         };
         let limit = match node.does {
             AssumedMode::Free => 0.0,
             _ => node.limit(f_n).max(0.0),
         };
-        let tangential = f_t - (f_t - by(e_t, tt)).clamp(-limit, limit);
+        let tangential = f_t - (f_t - stopping_force(e_t, tt)).clamp(-limit, limit);
         normal * normal + tangential * tangential
     }
 
@@ -414,20 +441,18 @@ impl LocalLaw<3> for Sweep<3> {
         let node = &self.nodes[place];
         let (force, motion) = (&self.forces[3 * place..], &self.motions[3 * place..]);
         let own = self.compliance.own(place);
-        let (nn, tt) = (own[0][0], 0.5 * (own[1][1] + own[2][2]));
-        // A motion without compliance has no force that stops it.
-        let by = |motion: f64, own: f64| if own > 0.0 { motion / own } else { 0.0 };
+        let nn = own[0][0];
         let normal = if nn <= 0.0 && motion[0] < 0.0 {
             f64::INFINITY
         } else {
-            force[0] - (force[0] - by(motion[0], nn)).max(0.0)
+            force[0] - (force[0] - stopping_force(motion[0], nn)).max(0.0)
         };
         let limit = if force[0] > 0.0 {
             node.limit(force[0])
         } else {
             0.0
         };
-        let trial = [1, 2].map(|k| force[k] - by(motion[k], tt));
+        let trial = self.trial(place);
         let size = trial[0].hypot(trial[1]);
         let part = if size > limit { limit / size } else { 1.0 };
         let off = [0, 1].map(|k| force[k + 1] - part * trial[k]);

@@ -41,6 +41,14 @@ impl Body {
         matches!(self.kind, BodyKind::Linear(_))
     }
 
+    /// Whether a compliance gives its motion for any forces, so that it needs no support.
+    pub fn is_compliance(&self) -> bool {
+        let BodyKind::Linear(linear) = &self.kind else {
+            return false;
+        };
+        matches!(linear.form, Form::Compliance { .. })
+    }
+
     /// Whether it is a body of revolution.
     pub fn is_axisymmetric(&self) -> bool {
         let round = |material: &Elastic| material.plane == Plane::Axisymmetric;

@@ -355,4 +355,37 @@ mod tests {
             assert_eq!(solver.state().u.len(), solver.model().dofs.len());
         }
     }
+
+    /// The first contact is coupled with no other, sticks at once, and is not swept again.
+    #[test]
+    fn a_contact_that_has_settled_keeps_its_mode_with_another_friction() {
+        let mut solver = solver(3, 0.6);
+        let coupled = [
+            [2.0, 0.3, 0.1, 1.7, 0.2, 0.1],
+            [0.3, 2.0, 0.2, 0.1, 1.1, 0.3],
+            [0.1, 0.2, 2.0, 0.2, 0.1, 1.0],
+            [1.7, 0.1, 0.2, 2.0, 0.1, 0.2],
+            [0.2, 1.1, 0.1, 0.1, 2.0, 0.1],
+            [0.1, 0.3, 1.0, 0.2, 0.1, 2.0],
+        ];
+        let others = (0..6).flat_map(|i| (0..6).map(move |j| (3 + i, 3 + j, coupled[i][j])));
+        let entries = (0..3).map(|i| (i, i, 1.0)).chain(others).collect();
+        let free = vec![-1.0, 0.1, 0.05, -1.0, 1.0, -2.0, -1.4, -1.0, 1.5];
+        let mut model = (*solver.model).clone();
+        if let Some(space) = &mut model.space {
+            space.problem = Some(Arc::new(SpaceProblem { entries, free }));
+        }
+        solver = ConeSolver::new(Arc::new(model)).expect("it has a problem");
+        for _ in 0..2 {
+            assert!(solver.step().expect("it steps"));
+        }
+        let controls = Arc::make_mut(&mut solver.state_mut().controls);
+        let friction = Friction::from_coefficient(0.61, 0.0);
+        controls.friction.fill(friction);
+        solver.at = None;
+        assert!(solver.step().expect("it steps"));
+        let record = &solver.event().nodes[0];
+        assert_eq!(record.decision.next, Mode::Fixed);
+        assert!(record.t_max > record.f_t, "{record:?}");
+    }
 }

@@ -12,9 +12,11 @@ use crate::{
 use std::sync::Arc;
 
 /// A displacement larger than this multiple of the scene's length is divergence.
-const DIVERGED: f64 = 1e4;
+pub(super) const DIVERGED: f64 = 1e4;
 /// If round-off keeps the residual above the tolerance, displacements must change by less than this fraction of the length.
 const STILL: f64 = 1e-8;
+/// Largest difference of the forces of the last minor iteration from those of an accepted state, by the force scale: the judge's.
+const REPORTED: f64 = 1e-8;
 /// With old factors, displacements have converged within this fraction of the length, whatever the tolerance.
 const NEAR: f64 = 1e-10;
 /// Fraction of the out-of-balance force that a major iteration with old factors may leave before the factors are renewed.
@@ -75,7 +77,13 @@ impl Stepper {
         let drowned = after.noise > Norms::LOUDEST;
         // A motion larger than the scene's length has diverged, however large its round-off.
         let still = after.correction < 1.0;
-        if settled && balanced && !drowned && !self.now.state.is_carried(&after) {
+        // Forces between linear bodies that stick balance at once, whatever the directions along which they were solved for.
+        let reported = REPORTED.max(settings.tolerance) * after.scale;
+        let turned = !at_limit
+            && after.correction > STILL
+            && differ(&self.event.nodes, &self.now.state.nodes, reported);
+        let unfinished = turned || self.now.state.is_carried(&after);
+        if settled && balanced && !drowned && !unfinished {
             return self.finish(after);
         }
         let accepts = settings.at_major_limit == AtLimit::Accept && !drowned;
@@ -300,6 +308,16 @@ impl State {
         self.next.major += 1;
         self.next.minor = 1;
     }
+}
+
+/// Whether the forces of the last minor iteration, along the directions frozen in it, differ from those of the state by more than
+/// `allowed`.
+fn differ(records: &[ContactRecord], nodes: &[ContactState], allowed: f64) -> bool {
+    let differences = records.iter().zip(nodes).map(|(record, node)| {
+        let [n, t] = [record.f_n - node.f_n, record.f_t - node.f_t];
+        n.abs().max(t.abs())
+    });
+    differences.fold(0.0, f64::max) > allowed
 }
 
 /// Whether a major iteration left more than [`ENOUGH`] of the out-of-balance force `asked` of it, or of the correction `before`:

@@ -5,9 +5,10 @@ use crate::interface::minor::{self, Check};
 use crate::interface::rows::carried;
 use crate::interface::t_max_iteration::{TMaxLimit, spiral};
 use crate::linear::sizes::ROUND_OFF;
-use crate::model::{self, AtCycle, AtLimit, SlipCount};
+use crate::model::{self, AtCycle, AtLimit, Body, SlipCount};
 use crate::plane::max_abs;
 use crate::step::iterate::Iterate;
+use crate::step::major::DIVERGED;
 use crate::{
     ContactRecord, Cycle, Failure, Method, Mode, NodeIncrement, Outcome, Singular, SolveResult,
     State, Stepper, Ties,
@@ -170,21 +171,24 @@ impl Iterate {
             })
     }
 
-    /// Whether the last solve returned excessive forces: those of a singular system, kept finite by round-off.
+    /// Whether the last solve returned excessive forces or motions: those of a singular system, kept finite by round-off.
     pub(super) fn is_unbounded(&self) -> bool {
-        let natural = self.source.spring() * self.model.length;
+        let length = self.model.length;
+        let exceeds = |values: [f64; 2], limit: f64| values.iter().any(|value| value.abs() > limit);
         (0..self.state.nodes.len()).any(|contact| {
-            let forces = self.source.increment(contact).force;
-            forces.iter().any(|f| f.abs() > UNBOUNDED * natural)
+            let NodeIncrement { force, motion, .. } = self.source.increment(contact);
+            exceeds(force, UNBOUNDED * self.source.spring() * length)
+                || exceeds(motion, DIVERGED * length)
         })
     }
 
     /// Failure before a ladder found a state without contact pressure: if the equations were singular, such a state does not
-    /// support the loose bodies.
+    /// support the loose bodies. A body given by its compliance is not loose.
     pub(super) fn unsupported(&self, records: &[ContactRecord]) -> Option<Failure> {
         let first = self.state.attempt.search.first.as_deref()?;
         let force = self.ties().force;
         let loose = matches!(first, Failure::Singular(_))
+            && !self.model.bodies.iter().all(Body::is_compliance)
             && !records.iter().any(|record| record.f_n > force);
         loose.then(|| first.clone())
     }

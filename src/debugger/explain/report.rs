@@ -496,7 +496,7 @@ pub fn failure(model: &Model, state: &State, at: Position, load: f64, failure: &
 pub fn sound(at: Position, state: &State) -> String {
     let accepted = shortest(state.start.load_factor);
     match at.increment {
-        0 | 1 => format!("no equilibrium after the start (load {accepted})"),
+        0 | 1 => format!("no state found after the start (load {accepted})"),
         n => format!(
             "the last equilibrium is increment {}, load {accepted}",
             n - 1

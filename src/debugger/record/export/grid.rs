@@ -273,7 +273,7 @@ fn contacts(model: &Model, state: &State, event: Option<&Event>, grid: &mut Grid
     let mut numbers = names.map(|_| vec![f64::NAN; nodes]);
     for (place, contact) in model.contacts.iter().enumerate() {
         let record = match event {
-            Some(event) if place < event.nodes.len() => of_record(event, place),
+            Some(event) if place < event.nodes.len() => of_record(state, event, place),
             _ => at_start(state, place),
         };
         let Some((mode, vector, values)) = record else {
@@ -304,8 +304,17 @@ fn contacts(model: &Model, state: &State, event: Option<&Event>, grid: &mut Grid
     }
 }
 
-fn of_record(event: &Event, place: usize) -> Option<ContactValues> {
+/// The forces of an accepted state are components along its own directions, not along those frozen in its last minor iteration.
+fn of_record(state: &State, event: &Event, place: usize) -> Option<ContactValues> {
     let record = event.nodes.get(place)?;
+    let accepted = event.outcome.is_accepted() && event.frames.is_empty();
+    let force = match state.nodes.get(place).filter(|_| accepted) {
+        Some(node) => {
+            let ([c, s], f_n, f_t) = (node.normal, record.f_n, record.f_t);
+            [c * f_n - s * f_t, s * f_n + c * f_t, 0.0]
+        }
+        None => event.force(place)?,
+    };
     let values = [
         record.f_n,
         record.f_t,
@@ -313,7 +322,7 @@ fn of_record(event: &Event, place: usize) -> Option<ContactValues> {
         record.gap,
         record.slip,
     ];
-    Some((record.decision.before, event.force(place)?, values))
+    Some((record.decision.before, force, values))
 }
 
 /// Before the first minor iteration the gap is unknown.
