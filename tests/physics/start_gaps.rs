@@ -196,6 +196,40 @@ fn bodies_without_any_hold_and_bodies_that_overlap_are_warned_of() {
     assert_eq!(told.matches("overlap").count(), 1, "{told}");
 }
 
+/// Two bars that cross: all nodes of each are outside the other.
+#[test]
+fn bodies_that_cross_without_a_node_inside_each_other_overlap() {
+    let text = r#"(
+    title: "A cross",
+    nodes: [
+        Block(id: "p", corners: [(-2, -0.25), (2, 0.25)], elements: (1, 1), element: quad4),
+        Block(id: "q", corners: [(-0.25, BOTTOM), (0.25, 2)], elements: (1, 1), element: quad4),
+    ],
+    materials: [Elastic(id: "m", E: 100.0, nu: 0.3)],
+    bodies: [Solid(id: "p", mesh: "p", material: "m"), Solid(id: "q", mesh: "q", material: "m")],
+    supports: [(node: "p.all", fix: [x, y]), (node: "q.all", fix: [x, y])],
+    history: (path: [0.0, 1.0], increment: 0.5),
+)"#;
+    let told = |bottom: &str| {
+        let text = text.replace("BOTTOM", bottom);
+        let scene = Scene::from_text("cross.ron", &text, &[]).unwrap();
+        warnings(&scene.model)
+    };
+    assert_eq!(
+        told("-2"),
+        [
+            "bodies p and q overlap: the side of the second from q.2 to q.4 lies partly inside the first"
+        ]
+    );
+    // It ends inside, and on the side of the other.
+    let inside = told("0.1");
+    assert!(
+        inside[0].contains("q.1 of the second lies inside"),
+        "{inside:?}"
+    );
+    assert_eq!(told("0.25"), Vec::<String>::new());
+}
+
 /// The points of faces are nodes of their own, which belong to no body.
 #[test]
 fn points_of_faces_hold_their_body_and_tell_a_surface_that_is_turned() {
