@@ -5,6 +5,7 @@ use crate::few;
 use crate::number::sig4;
 use crate::overlaps;
 use crate::pressed;
+use crate::unmatched;
 use stickslip_core::contact::facing::{MOST as MOST_SURFACES, faced};
 use stickslip_core::contact::projection::{project, projection_at};
 use stickslip_core::fem::lagrange;
@@ -35,7 +36,7 @@ pub struct StartGaps {
 }
 
 /// Projections of each slave node on its surfaces, with the gap (length); `None` if it is beyond the ends of all of them.
-fn stands(
+pub(crate) fn stands(
     nodes: &[Node],
     surfaces: &[Surface],
     contacts: &[Contact],
@@ -143,6 +144,7 @@ pub fn warnings(model: &Model) -> Vec<String> {
     all.extend(unheld(model));
     all.extend(overlaps::at_start(model));
     all.extend(pressed::warnings(model));
+    all.extend(unmatched::warnings(model));
     all
 }
 
