@@ -99,7 +99,7 @@ fn forces_of_a_rounded_matrix_are_accepted_to_its_digits_and_not_without() {
     assert!(said.contains("settings.matrix_accuracy allows"), "{said}");
 
     // Many forces together are larger than each, and their error in parts of the largest as well. That of lengths is not.
-    let verdict = solved.stepper.state().start.verdict.clone().unwrap();
+    let verdict = solved.stepper.state().start.verdict.unwrap();
     let allowed = |law: JudgedLaw| verdict.worst[law as usize].map_or(0.0, |worst| worst.allowed);
     let [lengths, forces] = [JudgedLaw::Gap, JudgedLaw::Cone].map(allowed);
     assert!(lengths < 0.5 * forces, "{lengths:e} {forces:e}");
