@@ -36,7 +36,7 @@ pub struct StartGaps {
 }
 
 /// Projections of each slave node on its surfaces, with the gap (length); `None` if it is beyond the ends of all of them.
-pub(crate) fn stands(
+fn stands(
     nodes: &[Node],
     surfaces: &[Surface],
     contacts: &[Contact],
@@ -144,7 +144,8 @@ pub fn warnings(model: &Model) -> Vec<String> {
     all.extend(unheld(model));
     all.extend(overlaps::at_start(model));
     all.extend(pressed::warnings(model));
-    all.extend(unmatched::warnings(model));
+    let stands = stands(&model.nodes, &model.surfaces, &model.contacts);
+    all.extend(unmatched::warnings(model, &stands));
     all
 }
 

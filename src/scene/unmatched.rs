@@ -6,11 +6,10 @@
 //! similar size, and 27 % with slave elements of twice the size. Sides that each lie over one element, and points of faces, are within
 //! 0.4 %.
 
-use crate::gaps::stands;
 use std::collections::BTreeMap;
 use stickslip_core::groups::marked;
 use stickslip_core::plane::distance;
-use stickslip_core::{Body, Model, Surface};
+use stickslip_core::{Body, Model, Surface, SurfacePoint};
 
 /// A border of the masters counts as inside a side if it is farther than this from its ends, in parts of the master's element.
 const INSIDE: f64 = 0.05;
@@ -19,13 +18,13 @@ const NEAR: f64 = 0.5;
 /// Least number of such sides on a surface for a warning.
 const LEAST: usize = 3;
 
-/// One sentence for each surface over whose borders most slave sides near it lie.
-pub(crate) fn warnings(model: &Model) -> Vec<String> {
-    let stands = stands(&model.nodes, &model.surfaces, &model.contacts);
+/// One sentence for each surface over whose borders most slave sides near it lie; `stands` are the projections of the slave nodes on
+/// their surfaces, with the gap.
+pub(crate) fn warnings(model: &Model, stands: &[Option<(SurfacePoint, f64)>]) -> Vec<String> {
     let mut slaves = vec![None; model.nodes.len()];
     for (contact, stand) in model.contacts.iter().zip(stands) {
         if contact.weights.is_empty() && !contact.bond.is_tied() {
-            slaves[contact.node] = stand;
+            slaves[contact.node] = *stand;
         }
     }
     let solids = || model.bodies.iter().filter_map(Body::solid);
