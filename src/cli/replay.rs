@@ -13,6 +13,8 @@ use stickslip_debugger::record::differences::{Difference, Differences, compare_w
 use stickslip_debugger::{Snapshot, SnapshotError};
 use stickslip_platform::files::finish_all;
 
+/// Maximum number of differences per snapshot in the text.
+const MOST_SHOWN: usize = 12;
 /// Maximum number of differences per snapshot in the record.
 const MOST_DIFFERENCES: usize = 100;
 
@@ -171,7 +173,8 @@ fn print(file: &Path, replayed: &ReplayResult, says: bool) -> Result<(), Error> 
             )
         }
         Compared { differences, .. } => {
-            format!("{file}: differs (left: recorded, right: recomputed)\n{differences}")
+            let table = differences.largest(MOST_SHOWN);
+            format!("{file}: differs (left: recorded, right: recomputed)\n{table}")
         }
     };
     if says {

@@ -187,6 +187,7 @@ impl ModelBuilder {
                 dof: dof((node, component))?,
                 value,
                 scale: Factor::default(),
+                volume: None,
             });
         }
         let mut is_on_body = vec![false; dofs.equation.len()];

@@ -5,6 +5,7 @@ use crate::few;
 use crate::number::sig4;
 use crate::overlaps;
 use crate::pressed;
+use crate::unmatched;
 use stickslip_core::contact::facing::{MOST as MOST_SURFACES, faced};
 use stickslip_core::contact::projection::{project, projection_at};
 use stickslip_core::fem::lagrange;
@@ -143,6 +144,8 @@ pub fn warnings(model: &Model) -> Vec<String> {
     all.extend(unheld(model));
     all.extend(overlaps::at_start(model));
     all.extend(pressed::warnings(model));
+    let stands = stands(&model.nodes, &model.surfaces, &model.contacts);
+    all.extend(unmatched::warnings(model, &stands));
     all
 }
 

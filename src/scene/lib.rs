@@ -8,6 +8,7 @@
 //! - `deck`: CalculiX and Abaqus decks; [`import`]: meshes of other programs.
 //! - [`attached`]: scenes sent by attached solvers; [`mesh_file`]: their meshes in files.
 //! - `pressed`: detects prescribed displacements that compress a solid beyond the range of its law.
+//! - `unmatched`: second-order slave sides over borders of second-order masters.
 //! - [`problems`]: interface problems of other programs.
 //! - [`builtin`]: the built-in scenes; [`embedded`](mod@embedded): other embedded files.
 //! - [`shown`]: makes external text safe for a terminal, table or picture; [`number`]: formats numbers for people.
@@ -46,6 +47,7 @@ mod curves;
 mod deck;
 mod geometry;
 mod pressed;
+mod unmatched;
 
 pub use compile::increments;
 pub use embedded::EmbeddedFile;

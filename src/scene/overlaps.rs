@@ -1,4 +1,4 @@
-//! Solids that overlap: a node of one lies inside the outline of another, which is straight between nodes.
+//! Solids that overlap: a node of one lies inside the outline of another, which is straight between nodes, or their sides cross.
 //!
 //! Contact acts at slave nodes that face a surface. Where none does, bodies pass through each other although every law of contact
 //! holds.
@@ -7,7 +7,7 @@ use crate::number::sig4;
 use std::cell::LazyCell;
 use std::collections::HashSet;
 use stickslip_core::contact::state::ContactState;
-use stickslip_core::plane::{depth_inside, range};
+use stickslip_core::plane::{cross, depth_inside, minus, range};
 use stickslip_core::{Body, IncrementStart, Model};
 
 /// Depths below this part of the scene's length are none.
@@ -18,20 +18,42 @@ const DEEP: f64 = 0.01;
 /// The same for a thin body, relative to its thickness, its area per diagonal: no node is deeper inside than half of that.
 const THIN: f64 = 0.25;
 
-/// A node of a solid inside another one.
+/// A node of a solid, or a side between two nodes, inside another one.
 struct Overlap {
-    /// Numbers of the outer body, and of the body of the node.
+    /// Numbers of the outer body, and of the body of the node or side.
     bodies: [usize; 2],
-    /// The deepest node.
-    node: usize,
-    /// The first node inside, along the sides of its body.
-    first: usize,
-    /// Distance of the deepest node from the outline (length).
+    /// The deepest one.
+    deepest: InnerPart,
+    /// The first one inside, along the sides of its body.
+    first: InnerPart,
+    /// Distance of the deepest one from the outline (length).
     depth: f64,
     /// Depth up to which it is not reported after a run (length).
     most: f64,
     /// How far the curved sides of both bodies are from straight ones between nodes (length).
     bend: f64,
+}
+
+/// What lies inside another solid.
+#[derive(Clone, Copy)]
+enum InnerPart {
+    Node(usize),
+    /// The middle of a side between two nodes that are outside.
+    Side([usize; 2]),
+}
+
+impl InnerPart {
+    fn words(self, model: &Model) -> String {
+        let name = |node: usize| &model.nodes[node].name;
+        match self {
+            InnerPart::Node(node) => format!("{} of the second lies inside the first", name(node)),
+            InnerPart::Side([from, to]) => format!(
+                "the side of the second from {} to {} lies partly inside the first",
+                name(from),
+                name(to)
+            ),
+        }
+    }
 }
 
 /// Describes pairs of solids that overlap before the first solve.
@@ -45,10 +67,8 @@ pub(crate) fn at_start(model: &Model) -> Vec<String> {
         .filter(|found| pairs.insert(unordered(found.bodies)))
         .map(|Overlap { bodies, first, .. }| {
             let [outer, inner] = bodies.map(|body| &model.bodies[body].name);
-            format!(
-                "bodies {outer} and {inner} overlap: {} of the second lies inside the first",
-                model.nodes[*first].name
-            )
+            let inside = first.words(model);
+            format!("bodies {outer} and {inner} overlap: {inside}")
         })
         .collect()
 }
@@ -62,7 +82,11 @@ pub fn at_end(model: &Model, last: &IncrementStart) -> Vec<String> {
     let mut all = Vec::new();
     let mut pairs = HashSet::new();
     for found in overlaps(model, &model.places(&last.u), near) {
-        let was = before.iter().filter(|was| was.bodies == found.bodies);
+        let same = |was: &&Overlap| match found.deepest {
+            InnerPart::Node(_) => was.bodies == found.bodies,
+            InnerPart::Side(_) => unordered(was.bodies) == unordered(found.bodies),
+        };
+        let was = before.iter().filter(same);
         let was = was.map(|was| was.depth).fold(0.0, f64::max);
         let grown = found.depth - was - found.bend;
         if grown <= found.most
@@ -73,10 +97,10 @@ pub fn at_end(model: &Model, last: &IncrementStart) -> Vec<String> {
         }
         let [outer, inner] = found.bodies.map(|body| &model.bodies[body].name);
         all.push(format!(
-            "bodies {outer} and {inner} overlap in the last accepted state: {} of the second lies inside the first by {}. Contact acts \
+            "bodies {outer} and {inner} overlap in the last accepted state: {} by {}. Contact acts \
              only at slave nodes that face a surface: make the side with the finer mesh the slave, or define contact of the sides \
              that meet there",
-            model.nodes[found.node].name,
+            found.deepest.words(model),
             sig4(found.depth)
         ));
     }
@@ -111,39 +135,69 @@ fn allowed(model: &Model, nodes: &[ContactState], bodies: [usize; 2]) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// Pairs of solids where a node of one lies deeper than `near` inside the outline of the other, each with its deepest node.
+/// Pairs of solids where a node of one lies deeper than `near` inside the outline of the other, each with its deepest node; then
+/// other pairs whose sides cross as deep, with the deepest side.
 fn overlaps(model: &Model, places: &[[f64; 2]], near: f64) -> Vec<Overlap> {
     let solids: Vec<(usize, &Body, Outline)> = (model.bodies.iter().enumerate())
         .filter_map(|(k, body)| Some((k, body, Outline::new(places, &body.solid()?.edges))))
         .collect();
     let mut all = Vec::new();
+    let mut crossing = Vec::new();
     for (a, body, outline) in &solids {
         let own = LazyCell::new(|| body.nodes.iter().copied().collect::<HashSet<usize>>());
         for (b, other, others) in &solids {
             if a == b || !outline.meets(others) {
                 continue;
             }
-            let mut deepest: Option<(usize, f64)> = None;
-            let mut first = None;
-            for &node in other.kind.lines().iter().flatten() {
-                let depth = outline.depth(places[node], near);
-                if depth > deepest.map_or(near, |(_, depth)| depth) && !own.contains(&node) {
-                    deepest = Some((node, depth));
-                    first = first.or(deepest);
-                }
-            }
-            let found = first.zip(deepest);
-            all.extend(found.map(|((first, _), (node, depth))| Overlap {
+            let overlap = |first, (deepest, depth)| Overlap {
                 bodies: [*a, *b],
-                node,
+                deepest,
                 first,
                 depth,
                 most: outline.tolerance().min(others.tolerance()),
                 bend: outline.bend + others.bend,
-            }));
+            };
+            let lines = other.kind.lines();
+            let nodes = lines.iter().flatten().map(|&node| {
+                let depth = outline.depth(places[node], near);
+                (InnerPart::Node(node), depth)
+            });
+            let is_own = |part: InnerPart| match part {
+                InnerPart::Node(node) => own.contains(&node),
+                InnerPart::Side(ends) => ends.iter().any(|node| own.contains(node)),
+            };
+            if let Some((first, deepest)) = first_and_deepest(nodes, near, is_own) {
+                all.push(overlap(first, deepest));
+            } else if a < b {
+                let pairs = lines.iter().flat_map(|line| line.windows(2));
+                let sides = pairs.map(|pair| {
+                    let depth = outline.depth_along([places[pair[0]], places[pair[1]]], near);
+                    (InnerPart::Side([pair[0], pair[1]]), depth)
+                });
+                let found = first_and_deepest(sides, near, is_own);
+                crossing.extend(found.map(|(first, deepest)| overlap(first, deepest)));
+            }
         }
     }
+    let met: HashSet<[usize; 2]> = all.iter().map(|found| unordered(found.bodies)).collect();
+    crossing.retain(|found| !met.contains(&found.bodies));
+    all.extend(crossing);
     all
+}
+
+/// The first and the deepest part deeper than `near`, without those that both bodies own.
+fn first_and_deepest(
+    parts: impl Iterator<Item = (InnerPart, f64)>,
+    near: f64,
+    is_own: impl Fn(InnerPart) -> bool,
+) -> Option<(InnerPart, (InnerPart, f64))> {
+    let mut found: Option<(InnerPart, (InnerPart, f64))> = None;
+    for (part, depth) in parts {
+        if depth > found.map_or(near, |(_, (_, depth))| depth) && !is_own(part) {
+            found = Some((found.map_or(part, |(first, _)| first), (part, depth)));
+        }
+    }
+    found
 }
 
 /// A closed outline, straight between nodes.
@@ -200,5 +254,30 @@ impl Outline {
         } else {
             0.0
         }
+    }
+
+    /// The largest depth of a straight side whose ends are not inside: at the middle of each part between two of the outline's sides.
+    fn depth_along(&self, [from, to]: [[f64; 2]; 2], near: f64) -> f64 {
+        let along = minus(to, from);
+        let is_beyond = (0..2).any(|k| {
+            let [low, high] = range([from[k], to[k]]);
+            high <= self.low[k] || low >= self.high[k]
+        });
+        if is_beyond {
+            return 0.0;
+        }
+        let meets = |&[a, b]: &[[f64; 2]; 2]| {
+            let (side, before) = (minus(b, a), minus(a, from));
+            let turn = cross(along, side);
+            let [part, other] = [cross(before, side) / turn, cross(before, along) / turn];
+            let both = [part, other].iter().all(|x| (0.0..=1.0).contains(x));
+            both.then_some(part)
+        };
+        let mut parts: Vec<f64> = self.sides.iter().filter_map(meets).collect();
+        parts.sort_by(f64::total_cmp);
+        let middles = parts.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]));
+        let depths =
+            middles.map(|part| self.depth([0, 1].map(|k| from[k] + part * along[k]), near));
+        depths.fold(0.0, f64::max)
     }
 }

@@ -81,7 +81,7 @@ struct Motions<'a> {
     /// Number of the prescribed value for each degree of freedom.
     prescribed: Vec<Option<usize>>,
     positions: Vec<[f64; 2]>,
-    /// The contacts of each node.
+    /// The contacts of each node, as slave node or as node of the face of a slave point.
     contacts: Vec<Vec<usize>>,
 }
 
@@ -93,7 +93,9 @@ impl<'a> Motions<'a> {
         }
         let mut contacts = vec![Vec::new(); model.nodes.len()];
         for (number, contact) in model.contacts.iter().enumerate() {
-            contacts[contact.node].push(number);
+            for (node, _) in contact.carriers() {
+                contacts[node].push(number);
+            }
         }
         Motions {
             model,
@@ -135,9 +137,11 @@ fn held_points(body: &Body, motions: &Motions, (axis, load): (usize, f64)) -> Ve
         .copied()
         .collect();
     contacts.sort_unstable();
+    contacts.dedup();
     let pushed = contacts.iter().filter_map(|&number| {
         let contact = &model.contacts[number];
-        if motions.at(contact.node, axis, load).is_some() {
+        let mut carriers = contact.carriers();
+        if carriers.all(|(node, _)| motions.at(node, axis, load).is_some()) {
             return None;
         }
         let at = places[contact.node];

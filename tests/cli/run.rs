@@ -448,6 +448,10 @@ fn what_is_recorded_replays_and_what_differs_is_told() {
     let output = ran(&["replay", "a.ron", "other.ron"]);
     assert_eq!(code(&output), 1, "{}", err(&output));
     assert!(out(&output).contains("beam.5 f_t"), "{}", out(&output));
+    assert!(out(&output).contains("the states are of increments 26 and"));
+    let lines: Vec<_> = out(&output).lines().map(str::to_owned).collect();
+    assert_eq!(lines.len(), 1 + 3 + 12 + 1, "{lines:#?}");
+    assert!(lines[16].starts_with("and ") && lines[16].ends_with(" more"));
     let output = ran(&["diff", "c.ron", "other.ron"]);
     assert_eq!(code(&output), 1);
     assert!(

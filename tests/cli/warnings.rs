@@ -19,8 +19,9 @@ fn warnings(scene: &str, ends: i32) -> Vec<String> {
     let lines = lines
         .lines()
         .filter_map(|line| line.strip_prefix("warning: "));
-    let of_bodies = lines.filter(|line| line.starts_with("bod"));
-    of_bodies.map(str::to_owned).collect()
+    let of_places =
+        lines.filter(|line| line.starts_with("bod") || line.contains("past the end of surface"));
+    of_places.map(str::to_owned).collect()
 }
 
 /// The lines of the debugger's diagnosis after the same run.
@@ -146,6 +147,49 @@ fn a_soft_contact_excuses_only_its_own_bodies() {
         0,
         &["bodies base and pad overlap in the last accepted state"],
     );
+}
+
+/// A shaft in a ring with flush ends: its corner slips off the end of the bore as both expand.
+#[test]
+fn a_corner_that_slips_off_a_flush_end_is_named_with_what_helps() {
+    let fit = |past_ends: f64, overhang: f64| {
+        format!(
+            r#"(
+    title: "Press fit",
+    nodes: [
+        Block(id: "shaft", corners: [(0, 0), (1, 0.5)], elements: (3, 3)),
+        Block(id: "ring", corners: [(1, 0), (2, {})], elements: (4, 3)),
+    ],
+    materials: [Elastic(id: "m", E: 1000, nu: 0.3, update: small, plane: axisymmetric)],
+    bodies: [Solid(id: "shaft", mesh: "shaft", material: "m"), Solid(id: "ring", mesh: "ring", material: "m")],
+    surfaces: [(id: "bore", along: "ring.left", past_ends: {past_ends})],
+    slaves: [(nodes: ["shaft.right"], on: ["bore"])],
+    supports: [(node: "shaft.left", fix: [x]), (node: "shaft.bottom", fix: [y]), (node: "ring.bottom", fix: [y])],
+    loads: [Expansion(on: "shaft", strain: 0.001)],
+    history: (path: [0, 1], increment: 0.5),
+)"#,
+            0.5 + overhang
+        )
+    };
+    let directory = tempfile::tempdir().unwrap();
+    let scene = directory.path().join("fit.ron");
+    let scene = scene.to_str().unwrap();
+    std::fs::write(scene, fit(0.0, 0.0)).unwrap();
+    agree(scene, 0, &["surfaces.bore.past_ends=0.5"]);
+    let told = warnings(scene, 0);
+    assert!(
+        told[0].contains("past the end of surface bore from increment 1 (load 0.5) on"),
+        "{told:?}"
+    );
+    // The surface continues, or the node is over it, or far outside.
+    for (past_ends, overhang) in [(0.5, 0.0), (0.0, 0.1), (0.0, -0.1)] {
+        std::fs::write(scene, fit(past_ends, overhang)).unwrap();
+        assert_eq!(
+            warnings(scene, 0),
+            Vec::<String>::new(),
+            "{past_ends} {overhang}"
+        );
+    }
 }
 
 #[test]

@@ -252,6 +252,39 @@ fn with_interventions() -> Snapshot {
     )
 }
 
+/// Of many rows, the text of `replay` has the first few.
+#[test]
+fn what_differs_most_comes_first_and_the_rest_is_counted() {
+    let left = Snapshot::read(&recorded()[0]).unwrap();
+    let mut right = left.clone();
+    right.state.slaves[0].f_n += 1e6;
+    for (k, own) in right.state.displacements.iter_mut().enumerate() {
+        own.y += 1e-3 * (k + 1) as f64;
+    }
+    let count = right.state.displacements.len();
+    assert!(count > 4);
+    let differences = compare(&left, &right);
+    assert_eq!(differences.rows.len(), count + 1);
+    let text = differences.largest(3);
+    let lines: Vec<&str> = text.lines().collect();
+    let name = |k: usize| format!("{} y", right.state.displacements[count - k].node);
+    assert_eq!(lines.len(), 5, "{text}");
+    let first = format!("{} f_n", right.state.slaves[0].node);
+    for (line, what) in lines[1..].iter().zip([first, name(1), name(2)]) {
+        assert!(line.starts_with(&what), "{what}: {text}");
+    }
+    assert_eq!(lines[4], format!("and {} more", count - 2), "{text}");
+    // The table of all of them stays as it is.
+    assert_eq!(differences.to_string().lines().count(), count + 2);
+    right.position.increment += 1;
+    let text = compare(&left, &right).largest(3);
+    assert!(text.starts_with("the states are of increments "), "{text}");
+    assert!(
+        text.lines().nth(2).unwrap().starts_with("increment "),
+        "{text}"
+    );
+}
+
 #[test]
 fn interventions_are_replayed() {
     let snapshot = with_interventions();

@@ -196,6 +196,80 @@ fn bodies_without_any_hold_and_bodies_that_overlap_are_warned_of() {
     assert_eq!(told.matches("overlap").count(), 1, "{told}");
 }
 
+/// Two bars that cross: all nodes of each are outside the other.
+#[test]
+fn bodies_that_cross_without_a_node_inside_each_other_overlap() {
+    let text = r#"(
+    title: "A cross",
+    nodes: [
+        Block(id: "p", corners: [(-2, -0.25), (2, 0.25)], elements: (1, 1), element: quad4),
+        Block(id: "q", corners: [(-0.25, BOTTOM), (0.25, 2)], elements: (1, 1), element: quad4),
+    ],
+    materials: [Elastic(id: "m", E: 100.0, nu: 0.3)],
+    bodies: [Solid(id: "p", mesh: "p", material: "m"), Solid(id: "q", mesh: "q", material: "m")],
+    supports: [(node: "p.all", fix: [x, y]), (node: "q.all", fix: [x, y])],
+    history: (path: [0.0, 1.0], increment: 0.5),
+)"#;
+    let told = |bottom: &str| {
+        let text = text.replace("BOTTOM", bottom);
+        let scene = Scene::from_text("cross.ron", &text, &[]).unwrap();
+        warnings(&scene.model)
+    };
+    assert_eq!(
+        told("-2"),
+        [
+            "bodies p and q overlap: the side of the second from q.2 to q.4 lies partly inside the first"
+        ]
+    );
+    // It ends inside, and on the side of the other.
+    let inside = told("0.1");
+    assert!(
+        inside[0].contains("q.1 of the second lies inside"),
+        "{inside:?}"
+    );
+    assert_eq!(told("0.25"), Vec::<String>::new());
+}
+
+#[test]
+fn second_order_sides_over_borders_of_second_order_masters_are_warned_of() {
+    let text = r#"(
+    title: "A block on a block",
+    nodes: [
+        Block(id: "low", corners: [(0, 0), (1, 1)], elements: (LOW, 1)),
+        Block(id: "top", corners: [(0, 1), (1, 2)], elements: (TOP, 1)),
+    ],
+    materials: [Elastic(id: "m", E: 100.0, nu: 0.3)],
+    bodies: [Solid(id: "low", mesh: "low", material: "m"), Solid(id: "top", mesh: "top", material: "m")],
+    surfaces: [(id: "low", along: "low.top")],
+    slaves: [(nodes: ["top.bottom"], on: ["low"])],
+    supports: [(node: "low.bottom", fix: [x, y]), (node: "top.top", fix: [x])],
+    loads: [Traction(along: "top.top", y: -1)],
+    history: (path: [0.0, 1.0], increment: 0.5),
+)"#;
+    let told = |low: u32, top: u32, kind: &str, by: &str| {
+        let text = text
+            .replace("LOW", &low.to_string())
+            .replace("TOP", &top.to_string())
+            .replace(", 1))", &format!(", 1){kind})"))
+            .replace("on: [\"low\"]", &format!("on: [\"low\"]{by}"));
+        let scene = Scene::from_text("blocks.ron", &text, &[]).unwrap();
+        warnings(&scene.model).join("\n")
+    };
+    let points = ", law: Penalty(stiffness: 1e4), by: surface";
+    assert!(
+        told(10, 9, "", "").starts_with("9 of 9 slave sides near surface low lie over a border")
+    );
+    assert!(told(10, 5, "", "").starts_with("5 of 5 slave sides"));
+    for (low, top, kind, by) in [
+        (10, 10, "", ""),
+        (5, 10, "", ""),
+        (10, 9, ", element: quad4", ""),
+        (10, 9, "", points),
+    ] {
+        assert_eq!(told(low, top, kind, by), "", "{low} {top} {kind} {by}");
+    }
+}
+
 /// The points of faces are nodes of their own, which belong to no body.
 #[test]
 fn points_of_faces_hold_their_body_and_tell_a_surface_that_is_turned() {

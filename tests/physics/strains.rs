@@ -327,6 +327,26 @@ fn a_motion_that_must_press_svk_out_of_its_range_is_found_before_the_run() {
     assert!(!warned(&[("materials.rubber.update", "updated")]));
     assert!(!warned(&[("loads[0].value", "-0.8")]));
     assert!(!warned(&[("loads[0].value", "1.4")]), "it moves away");
+    // Points of faces are pressed as well.
+    let file = format!("{FOLDER}/failures/minimal-collapse.ron");
+    let text = std::fs::read_to_string(file).unwrap();
+    let points = text.replace(
+        "start: sliding",
+        "start: sliding, law: Penalty(stiffness: 1e4), by: surface",
+    );
+    let model = Scene::from_text("points.ron", &points, &[]).unwrap().model;
+    assert!(
+        model
+            .contacts
+            .iter()
+            .all(|contact| !contact.weights.is_empty())
+    );
+    let told = gaps::warnings(&model);
+    assert!(
+        told.iter()
+            .any(|line| line.contains("to 0.300 of its length")),
+        "{told:?}"
+    );
     // The block itself, without any contact.
     let held = unit("quad8", "").model;
     assert!(

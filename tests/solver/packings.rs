@@ -4,6 +4,7 @@ use crate::common::{Run, finished, run};
 use crate::packing::{global, local, natural_map};
 use crate::siconos::in_blocks;
 use std::fs;
+use stickslip::contact::laws::JudgedLaw;
 use stickslip::contact::table2::Rule;
 use stickslip::explain::failures::describe;
 use stickslip::explain::{accuracy, report};
@@ -96,6 +97,12 @@ fn forces_of_a_rounded_matrix_are_accepted_to_its_digits_and_not_without() {
     assert!((1e-9..5e-6).contains(&error), "{error:e}");
     let said = report::outcome(solved.stepper.model(), solved.stepper.event());
     assert!(said.contains("settings.matrix_accuracy allows"), "{said}");
+
+    // Many forces together are larger than each, and their error in parts of the largest as well. That of lengths is not.
+    let verdict = solved.stepper.state().start.verdict.unwrap();
+    let allowed = |law: JudgedLaw| verdict.worst[law as usize].map_or(0.0, |worst| worst.allowed);
+    let [lengths, forces] = [JudgedLaw::Gap, JudgedLaw::Cone].map(allowed);
+    assert!(lengths < 0.5 * forces, "{lengths:e} {forces:e}");
 
     let exact = [("settings.matrix_accuracy".to_owned(), "0".to_owned())];
     let run = run(&open(&exact));

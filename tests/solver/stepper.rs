@@ -43,6 +43,9 @@ fn a_body_that_nothing_holds_is_named_with_each_of_its_motions() {
     };
     assert_eq!(motions.len(), 3, "{motions:?}");
     assert!(motions.iter().all(|m| m.body == "b"));
+    // First those that the force along y moves; it does no work along x.
+    assert_eq!(motions[0].motion, LooseMotion::Translation([0.0, 1.0]));
+    assert_eq!(motions[2].motion, LooseMotion::Translation([1.0, 0.0]));
     let held = common::run(&read(&LOOSE.replace(
         "SUPPORTS",
         "supports: [(node: \"b.start\", fix: [y, rotation])],",

@@ -218,6 +218,7 @@ fn conditions_of_a_scene_by_hand() {
         dof,
         value: -2.0,
         scale: Default::default(),
+        volume: None,
     });
     let found =
         stickslip::explain::conditions::conditions(&model, 0.5, &|node| model.nodes[node].at);

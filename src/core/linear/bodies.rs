@@ -360,9 +360,9 @@ impl Source for Bodies {
     }
 
     fn explain(&self, contacts: &[ContactState]) -> Singular {
-        let positions = &self.system.positions;
+        let at = (&self.system.positions[..], &self.system.external[..]);
         let projection = |contact: usize| self.system.projection(contact);
-        singular::diagnose(&self.model, positions, contacts, projection)
+        singular::diagnose(&self.model, at, contacts, projection)
     }
 
     fn position(&self, contact: usize) -> [f64; 2] {

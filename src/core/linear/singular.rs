@@ -46,10 +46,11 @@ pub enum LooseMotion {
     Rotation([f64; 2]),
 }
 
-/// The rigid motions without resistance, for these modes and this geometry.
+/// The rigid motions without resistance, for these modes and this geometry, first those on which the loads (force by degree of
+/// freedom) do work.
 pub fn diagnose<'a>(
     model: &Model,
-    positions: &[[f64; 2]],
+    (positions, loads): (&[[f64; 2]], &[f64]),
     nodes: &[ContactState],
     projection: impl Fn(usize) -> Option<&'a Projection>,
 ) -> Singular {
@@ -80,10 +81,10 @@ pub fn diagnose<'a>(
         }
     }
     frame.linear(&mut conditions);
-    let motions = null_space(conditions, model.bodies.len())
-        .iter()
-        .flat_map(|v| frame.name(v))
-        .collect::<Vec<_>>();
+    let mut free = null_space(conditions, model.bodies.len());
+    let loads = frame.loads(loads);
+    free.sort_by_key(|v| !does_work(&loads, v));
+    let motions = free.iter().flat_map(|v| frame.name(v)).collect::<Vec<_>>();
     if motions.is_empty() {
         Singular::Unexplained
     } else {
@@ -211,6 +212,22 @@ impl<'a> Frame<'a> {
                 conditions.push(row);
             }
         }
+    }
+
+    /// The loads as forces and moments on the bodies.
+    fn loads(&self, loads: &[f64]) -> Row {
+        let mut row = Row::new();
+        for (dof, load) in loads.iter().enumerate().filter(|(_, load)| **load != 0.0) {
+            let at = self.model.dofs.node_of(dof);
+            let Some((node, component)) = at else {
+                continue;
+            };
+            let component = [Component::X, Component::Y, Component::Rotation][component];
+            if let Some(&body) = self.owners.get(&node) {
+                self.add_component(&mut row, body, node, component, *load);
+            }
+        }
+        row
     }
 
     /// Describes the motion of each body in a null vector.
@@ -365,6 +382,13 @@ fn reduce(basis: &mut [Row], columns: usize) {
         }
         done += 1;
     }
+}
+
+/// Whether the work of these loads in a motion is more than round-off.
+fn does_work(loads: &Row, v: &Row) -> bool {
+    let largest = max_abs(loads.values()) * max_abs(v.values());
+    let work: f64 = loads.iter().map(|(&column, x)| x * entry(v, column)).sum();
+    work.abs() > ZERO * largest
 }
 
 /// Value of a vector in a column.

@@ -438,14 +438,19 @@ pub trait Source: Send {
         None
     }
 
+    /// Uncertainty of lengths relative to the length scale. `None` if it is that of forces ([`Norms::limit`]).
+    fn limit_of_lengths(&self) -> Option<f64> {
+        None
+    }
+
     /// Judges a converged state from positions and forces alone ([`crate::contact::judge`]).
     fn judge(&mut self, at: &LinearisationPoint<'_>, after: &Norms) -> Verdict {
-        let tolerance = (10.0 * at.chosen.tolerance.max(after.limit)).max(TOLERANCE);
+        let allowed = |limit: f64| (10.0 * at.chosen.tolerance.max(limit)).max(TOLERANCE);
         let scales = Scales {
             length: self.length(),
             force: after.scale.max(f64::MIN_POSITIVE),
-            lengths: tolerance,
-            forces: tolerance,
+            lengths: allowed(self.limit_of_lengths().unwrap_or(after.limit)),
+            forces: allowed(after.limit),
         };
         let mut verdict = Verdict::default();
         for (k, state) in at.contacts.iter().enumerate() {

@@ -57,6 +57,8 @@ pub struct SparseInterface {
     forces: Vec<f64>,
     moved: Vec<f64>,
     norms: Norms,
+    /// Uncertainty of lengths relative to the scene's.
+    lengths: f64,
     work: Work,
 }
 
@@ -98,6 +100,7 @@ impl SparseInterface {
             forces: vec![0.0; count],
             moved: vec![0.0; count],
             norms: Norms::default(),
+            lengths: 0.0,
             work: Work::default(),
             model: model.clone(),
         })
@@ -324,15 +327,20 @@ impl Source for SparseInterface {
         let scale = loads.max(largest(&self.before)).max(f64::MIN_POSITIVE);
         let force = self.spring * largest(&self.moved);
         self.norms = at.norms(force, scale);
-        let mut allowed = SETTLED;
+        // Forces, and gaps and drifts, that the natural map of accepted forces allows.
+        let mut allowed = [SETTLED; 2];
         if at.settings.matrix_accuracy > SETTLED {
-            // Gaps, drifts and forces that the natural map of accepted forces allows.
             let size = self.before.iter().map(|f| f * f).sum::<f64>().sqrt();
-            let times = (size / scale).max(size * self.softest / model.length);
-            allowed = at.settings.matrix_accuracy * times.max(1.0);
+            let times = [size / scale, size * self.softest / model.length];
+            allowed = times.map(|times| at.settings.matrix_accuracy * times.max(1.0));
         }
-        self.norms.limit = self.norms.limit.max(allowed);
+        let [forces, lengths] = allowed.map(|allowed| self.norms.limit.max(allowed));
+        (self.norms.limit, self.lengths) = (forces.max(lengths), lengths);
         Ok(())
+    }
+
+    fn limit_of_lengths(&self) -> Option<f64> {
+        Some(self.lengths)
     }
 
     fn norms(&mut self, at: &LinearisationPoint<'_>) -> Norms {

@@ -11,6 +11,9 @@ pub struct Load {
     pub value: f64,
     /// Amplitude as a function of the load factor.
     pub scale: Factor,
+    /// Number of the load per volume in the scene that it is a part of. At nodes of second-order elements the parts of one load
+    /// have either sign.
+    pub volume: Option<usize>,
 }
 
 /// A following pressure on faces of solids: force per current area, positive into the body. Or the thermal expansion of a solid,

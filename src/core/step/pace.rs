@@ -227,6 +227,7 @@ mod tests {
                 dof: 0,
                 value: 3.0,
                 scale: Factor(points.to_vec()),
+                volume: None,
             })
             .collect();
         model

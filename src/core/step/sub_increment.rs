@@ -122,21 +122,30 @@ impl SubIncrement {
 }
 
 /// The load factor one increment further along the path; the end of the leg if that is close.
+///
+/// After whole increments it is a multiple of the increment from the start of the leg, so that round-off does not add up.
 fn next_load_factor(path: &[f64], (from, leg): (f64, usize), increment: f64) -> f64 {
-    let target = path[leg + 1];
+    let (begin, target) = (path[leg], path[leg + 1]);
     let left = target - from;
     if left.abs() <= increment * (1.0 + 1e-9) {
         return target;
     }
-    tidy(from + increment * left.signum(), path)
+    let size = path.iter().fold(from.abs(), |m, p| m.max(p.abs()));
+    let after = |start: f64, count: f64| start + increment * count * left.signum();
+    let whole = ((from - begin) / increment).abs().round();
+    let next = match (after(begin, whole) - from).abs() <= 4.0 * f64::EPSILON * size {
+        true => after(begin, whole + 1.0),
+        false => after(from, 1.0),
+    };
+    tidy(next, size)
 }
 
-/// Rounds off the error of summing decimal increments, so that 0.07 is not 0.07000000000000002.
-fn tidy(load_factor: f64, path: &[f64]) -> f64 {
-    let size = path.iter().fold(load_factor.abs(), |m, p| m.max(p.abs()));
+/// Rounds to 13 digits of the largest load factor if that changes no more than round-off, so that 0.07 is not
+/// 0.07000000000000002, but a third stays a third.
+fn tidy(load_factor: f64, size: f64) -> f64 {
     let unit = 10f64.powi(13 - size.log10().ceil() as i32);
     let rounded = (load_factor * unit).round() / unit;
-    if rounded.is_finite() {
+    if (rounded - load_factor).abs() <= 4.0 * f64::EPSILON * size {
         rounded
     } else {
         load_factor
@@ -146,6 +155,43 @@ fn tidy(load_factor: f64, path: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Load factors at the ends of the increments of a path.
+    fn walk(path: &[f64], increment: f64) -> Vec<f64> {
+        let mut ends = vec![path[0]];
+        for leg in 0..path.len() - 1 {
+            while ends.last() != Some(&path[leg + 1]) {
+                let from = ends[ends.len() - 1];
+                ends.push(next_load_factor(path, (from, leg), increment));
+            }
+        }
+        ends
+    }
+
+    #[test]
+    fn load_factors_are_multiples_of_the_increment_whether_it_has_a_decimal_form_or_not() {
+        for parts in [3, 6, 7, 60, 600, 7000] {
+            let ends = walk(&[0.0, 1.0, 0.0], 1.0 / f64::from(parts));
+            assert_eq!(ends.len(), 2 * parts as usize + 1);
+            for (k, end) in ends.iter().enumerate() {
+                let exact = f64::from(parts - (k as i32 - parts).abs()) / f64::from(parts);
+                assert!((end - exact).abs() <= 2.3e-16, "{k}/{parts}: {end}");
+            }
+        }
+        for (parts, middle) in [(6, 3), (60, 30), (600, 300), (7000, 3500)] {
+            assert_eq!(walk(&[0.0, 1.0], 1.0 / f64::from(parts))[middle], 0.5);
+        }
+        // Decimals are exact, also on a leg that begins elsewhere and after an increment of another size.
+        for (k, end) in walk(&[0.0, 0.25, -0.1], 0.01).iter().enumerate() {
+            let hundredths = if k <= 25 { k as f64 } else { 50.0 - k as f64 };
+            assert_eq!(*end, hundredths / 100.0);
+        }
+        assert_eq!(next_load_factor(&[0.0, 1.0], (0.03, 0), 0.07), 0.1);
+        assert_eq!(
+            next_load_factor(&[0.0, 1.0], (1.0 / 3.0, 0), 0.25),
+            1.0 / 3.0 + 0.25
+        );
+    }
 
     #[test]
     fn what_is_left_of_a_part_begins_where_its_halves_have_come_to_and_never_before() {

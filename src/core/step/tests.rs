@@ -175,6 +175,7 @@ fn cornered(solver: LinearSolver, pressed: [f64; 2]) -> Stepper {
         dof,
         value,
         scale: Default::default(),
+        volume: None,
     };
     let model = Model {
         bodies: vec![body],

@@ -63,6 +63,7 @@ pub fn conditions(model: &Model, load_factor: f64, place: &dyn Fn(usize) -> Poin
     let loads = model
         .loads
         .iter()
+        .filter(|load| load.volume.is_none())
         .map(|load| (Given::Load, load.dof, amplitude(load.value, &load.scale)));
     let motions = model
         .prescribed
@@ -83,11 +84,45 @@ pub fn conditions(model: &Model, load_factor: f64, place: &dyn Fn(usize) -> Poin
         let at = place(node);
         ConditionArrow { given, at, along }
     });
-    found.arrows = scaled(arrows.collect());
+    let resultants = resultants(model, &amplitude, place);
+    found.arrows = scaled(arrows.chain(resultants).collect());
     found
         .arrows
         .extend(scaled(pressures(model, &amplitude, place)));
     found
+}
+
+/// Loads per volume, one arrow each, at the centre of the volume.
+fn resultants(
+    model: &Model,
+    amplitude: &dyn Fn(f64, &Factor) -> f64,
+    place: &dyn Fn(usize) -> Point,
+) -> Vec<ConditionArrow> {
+    // The force, and for each of its components the sum of component times position.
+    let mut sums: BTreeMap<usize, (Point, [Point; 2])> = BTreeMap::new();
+    for load in &model.loads {
+        let (Some(volume), Some((node, axis @ (0 | 1)))) =
+            (load.volume, model.dofs.node_of(load.dof))
+        else {
+            continue;
+        };
+        let (value, at) = (amplitude(load.value, &load.scale), place(node));
+        let (force, moments) = sums.entry(volume).or_default();
+        force[axis] += value;
+        moments[axis] = [0, 1].map(|k| moments[axis][k] + value * at[k]);
+    }
+    let arrow = |(along, moments): (Point, [Point; 2])| {
+        let at = [0, 1].map(|k| dot(along, [moments[0][k], moments[1][k]]) / dot(along, along));
+        ConditionArrow {
+            given: Given::Load,
+            at,
+            along,
+        }
+    };
+    let found = sums.into_values().map(arrow);
+    found
+        .filter(|arrow| arrow.at.iter().all(|x| x.is_finite()))
+        .collect()
 }
 
 /// Following pressures, one arrow per face.
@@ -154,4 +189,39 @@ pub fn supports(model: &Model) -> Vec<Support> {
         })
         .filter(|(_, held)| held.contains(&true))
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use stickslip_scene::Scene;
+
+    #[test]
+    fn a_weight_is_one_arrow_although_nodal_forces_of_second_order_elements_point_either_way() {
+        let text = "(title: \"t\", nodes: [Block(id: \"b\", corners: [(1, 0), (3, 1)], elements: (4, 2))],
+            materials: [Elastic(id: \"m\", E: 1, nu: 0.3)], bodies: [Solid(id: \"b\", mesh: \"b\", material: \"m\")],
+            supports: [(node: \"b.bottom\", fix: [x, y])],
+            loads: [Volume(on: \"b\", x: 3, y: -4), Force(node: \"b.top@0.5\", y: -5)],
+            history: (path: [0, 1], increment: 1))";
+        let model = Scene::from_text("t", text, &[]).unwrap().model;
+        let upward = |load: &stickslip_core::model::Load| load.value * load.scale.at(1.0) > 0.0;
+        assert!(
+            model
+                .loads
+                .iter()
+                .any(|load| upward(load) && load.dof % 2 == 1)
+        );
+        let found = conditions(&model, 1.0, &|node| model.nodes[node].at);
+        let [force, weight] = &found.arrows[..] else {
+            panic!("{:?}", found.arrows)
+        };
+        let near = |a: Point, b: Point| minus(a, b).iter().all(|x| x.abs() < 1e-12);
+        assert!(
+            near(force.at, [2.0, 1.0]) && near(force.along, [0.0, -0.5]),
+            "{force:?}"
+        );
+        // Two units of area.
+        assert!(near(weight.at, [2.0, 0.5]), "{:?}", weight.at);
+        assert!(near(weight.along, [0.6, -0.8]), "{:?}", weight.along);
+    }
 }

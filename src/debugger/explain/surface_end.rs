@@ -3,15 +3,18 @@
 //!
 //! The last equilibrium shows which nodes are past an end and behind it, or slide outwards at it. The increment is then repeated with
 //! such a node held free: if forces balance while the node is inside, or nowhere, the end of the surface ends the path.
+//!
+//! In accepted states, a node that touched or starts flush with an end may be a little past it: two flush ends move apart as their
+//! bodies expand. Nothing presses it there although it would be inside if the surface continued.
 
 use super::majors::slope;
 use super::names;
 use std::ops::ControlFlow;
 use stickslip_core::groups::distinct;
-use stickslip_core::plane::{cross, dot, minus, unit};
+use stickslip_core::plane::{cross, distance, dot, minus, unit};
 use stickslip_core::{
-    Intervention, Mode, Model, NodeKinematics, Outcome, RunEnd, SearchBudget, SearchMode, Settings,
-    State, Stepper, SurfaceElement, Until,
+    IncrementStart, Intervention, Mode, Model, NodeKinematics, Outcome, RunEnd, SearchBudget,
+    SearchMode, Settings, State, Stepper, SurfaceElement, Until,
 };
 use stickslip_scene::{sig4, sig6};
 
@@ -22,6 +25,24 @@ const DEEP: f64 = 1e-4;
 /// Maximum number of nodes tried, and of minor iterations of each trial.
 const MOST_NODES: usize = 4;
 const MOST_MINORS: u64 = 400;
+
+/// Largest distance past an end and behind it of a node that has slipped off, relative to the last element of the surface.
+const SLIPPED: f64 = 0.05;
+/// Largest distance along the surface of a node that is flush with its end, relative to the last element.
+const FLUSH: f64 = 2e-3;
+/// Depths below this part of the scene's length are none.
+const NO_DEPTH: f64 = 1e-9;
+
+/// A node that an accepted increment leaves a little past the end of its surface, where it would be inside if the surface continued.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SlippedNode {
+    /// Number of the contact.
+    pub slave: usize,
+    /// Number of the surface.
+    pub surface: usize,
+    /// Distance past the end, along the surface (length).
+    pub past: f64,
+}
 
 /// A node near the end of a surface.
 struct NearEnd {
@@ -111,9 +132,7 @@ fn near_ends(model: &Model, state: &State) -> Vec<NearEnd> {
     for (slave, (contact, node)) in model.contacts.iter().zip(&state.start.nodes).enumerate() {
         for &surface in &contact.surfaces {
             for end in ends(model, surface, &places).into_iter().flatten() {
-                let to = minus(places[contact.node], places[end.node]);
-                // The outward normal is on the right of the walk.
-                let (past, depth) = (end.sign * dot(end.walk, to), cross(end.walk, to));
+                let [past, depth] = end.beyond(&places, contact.node);
                 let is_free = node.mode == Mode::Free && node.spot.is_none();
                 let slides = node.mode == Mode::Sliding
                     && node.spot.is_some_and(|spot| spot.surface == surface);
@@ -138,6 +157,53 @@ fn near_ends(model: &Model, state: &State) -> Vec<NearEnd> {
     found
 }
 
+/// The nodes that have slipped off the end of a surface at the end of an accepted increment: free and past the end by a small part
+/// of an element, and inside the continued surface. At the start of the increment they touched, or they are flush with that end
+/// before deformation.
+pub fn slipped_off(model: &Model, [before, last]: [&IncrementStart; 2]) -> Vec<SlippedNode> {
+    if model.space.is_some() {
+        return Vec::new();
+    }
+    let is_off = |slave: &usize| {
+        let (contact, node) = (&model.contacts[*slave], &last.nodes[*slave]);
+        let is_point = !contact.weights.is_empty();
+        node.mode == Mode::Free && node.spot.is_none() && !is_point && !contact.bond.is_tied()
+    };
+    let off: Vec<usize> = (0..model.contacts.len()).filter(is_off).collect();
+    if off.is_empty() {
+        return Vec::new();
+    }
+    let start: Vec<[f64; 2]> = model.nodes.iter().map(|node| node.at).collect();
+    let (places, unclosed) = (
+        model.places(&last.u),
+        model.unclosed(last.leg, last.load_factor),
+    );
+    let mut found = Vec::new();
+    for slave in off {
+        let contact = &model.contacts[slave];
+        let remains = contact.overlap * unclosed + NO_DEPTH * model.length;
+        for &surface in &contact.surfaces {
+            let [now, was] = [&places, &start].map(|at| ends(model, surface, at));
+            let both = now.into_iter().flatten().zip(was.into_iter().flatten());
+            found.extend(both.filter_map(|(now, was)| {
+                let near = SLIPPED * now.length;
+                let [past, depth] = now.beyond(&places, contact.node);
+                let [past_at_start, depth_at_start] = was.beyond(&start, contact.node);
+                let is_flush =
+                    past_at_start.abs() < FLUSH * was.length && depth_at_start.abs() < near;
+                let touched = before.nodes[slave].mode != Mode::Free;
+                let is_off = (0.0..near).contains(&past) && (remains..near).contains(&depth);
+                (is_off && (touched || is_flush)).then_some(SlippedNode {
+                    slave,
+                    surface,
+                    past,
+                })
+            }));
+        }
+    }
+    found
+}
+
 /// An end of a surface.
 struct SurfaceEnd {
     node: usize,
@@ -145,6 +211,17 @@ struct SurfaceEnd {
     walk: [f64; 2],
     /// Whether the walk ends there: 1, otherwise −1.
     sign: f64,
+    /// Length of the element there.
+    length: f64,
+}
+
+impl SurfaceEnd {
+    /// How far a node is past the end along the surface, and behind it (length).
+    fn beyond(&self, places: &[[f64; 2]], node: usize) -> [f64; 2] {
+        let to = minus(places[node], places[self.node]);
+        // The outward normal is on the right of the walk.
+        [self.sign * dot(self.walk, to), cross(self.walk, to)]
+    }
 }
 
 /// The ends of a surface; none of a closed or endless one.
@@ -155,8 +232,19 @@ fn ends(model: &Model, surface: usize, places: &[[f64; 2]]) -> Option<[SurfaceEn
     let (start, end) = (*one.first()?, *other.last()?);
     let walk = [slope(one, places, -1.0), slope(other, places, 1.0)];
     let [first, second] = [unit(walk[0])?, unit(walk[1])?];
-    let end_at = |node, walk, sign| SurfaceEnd { node, walk, sign };
-    (start != end && !chain.endless).then(|| [end_at(start, first, -1.0), end_at(end, second, 1.0)])
+    let size = |[from, to]: [usize; 2]| distance(places[from], places[to]);
+    let sizes = [[start, *one.last()?], [*other.first()?, end]].map(size);
+    let end_at = |node, walk, sign, length| SurfaceEnd {
+        node,
+        walk,
+        sign,
+        length,
+    };
+    let ends = [
+        end_at(start, first, -1.0, sizes[0]),
+        end_at(end, second, 1.0, sizes[1]),
+    ];
+    (start != end && !chain.endless).then_some(ends)
 }
 
 /// Whether forces balance during the increment, with the node held free, while the node is behind the surface. `None` if interrupted,

@@ -1,21 +1,26 @@
-//! Finds bodies that move although no force acts on them.
+//! Finds bodies that move although no force acts on them, and logs what accepted increments find about places.
 //!
 //! A body that only contacts hold is in equilibrium wherever it lies if all of its contact forces are zero. The states are
 //! accepted, because they obey every law, but its position may follow from the course of the iterations.
 
-use std::collections::BTreeMap;
+use super::names;
+use super::surface_end::{SlippedNode, slipped_off};
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 use stickslip_core::contact::record::ContactRecord;
 use stickslip_core::groups::distinct;
 use stickslip_core::model::{BodyKind, diagonal};
 use stickslip_core::{Body, Event, IncrementStart, Model, Outcome};
-use stickslip_scene::{overlaps, shortest, sig4};
+use stickslip_scene::{first_of, overlaps, shortest, sig4};
 
 /// Contact forces below this part of the force scale are round-off.
 const NO_FORCE: f64 = 1e-9;
 /// Motions below this part of the scene's length are not reported: a body that is let go moves as its strains recover.
 const NO_MOTION: f64 = 1e-3;
+
+/// Maximum number of nodes named.
+const MOST_NODES: usize = 3;
 
 /// The bodies of a model that only contacts hold.
 #[derive(Debug, Clone, Default)]
@@ -41,6 +46,15 @@ pub struct UnforcedMotion {
     pub distance: f64,
 }
 
+/// What an accepted increment finds about the places of bodies and nodes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum PlaceFinding {
+    /// A body moved although no force acts on it.
+    Unforced(UnforcedMotion),
+    /// A node is a little past the end of its surface.
+    Slipped(SlippedNode),
+}
+
 impl FreeBodies {
     /// The free bodies of a model.
     pub fn new(model: &Model) -> FreeBodies {
@@ -50,8 +64,27 @@ impl FreeBodies {
         }
     }
 
+    /// The bodies that moved without a force in an accepted increment, and the nodes that slipped off an end, from the states at its
+    /// start and its end.
+    pub fn findings(
+        &self,
+        model: &Model,
+        event: &Event,
+        states: [&IncrementStart; 2],
+    ) -> Vec<PlaceFinding> {
+        let motions = self.motions(model, event, states.map(|state| &state.u[..]));
+        let slipped = match &event.outcome {
+            Outcome::Increment { .. } => slipped_off(model, states),
+            _ => Vec::new(),
+        };
+        let motions = motions.into_iter().map(PlaceFinding::Unforced);
+        motions
+            .chain(slipped.into_iter().map(PlaceFinding::Slipped))
+            .collect()
+    }
+
     /// The bodies that moved without a force in an accepted increment, from the displacements at its start and its end.
-    pub fn motions(
+    fn motions(
         &self,
         model: &Model,
         event: &Event,
@@ -79,9 +112,20 @@ impl FreeBodies {
     }
 }
 
-/// The motions without a force in a run, by body.
+/// The motions without a force in a run, by body, and the nodes that slipped off, by surface.
 #[derive(Debug, Clone, Default)]
-pub struct UnforcedLog(BTreeMap<usize, UnforcedRange>);
+pub struct UnforcedLog {
+    moved: BTreeMap<usize, UnforcedRange>,
+    slipped: BTreeMap<usize, SlippedNodes>,
+}
+
+/// The nodes that slipped off the ends of a surface, since which increment and load, and how far at most (length).
+#[derive(Debug, Clone)]
+struct SlippedNodes {
+    slaves: BTreeSet<usize>,
+    since: (u32, f64),
+    farthest: f64,
+}
 
 /// Where a body moved without a force: first and last increment, and load; and the farthest motion in one of them (length).
 #[derive(Debug, Clone)]
@@ -92,10 +136,23 @@ struct UnforcedRange {
 }
 
 impl UnforcedLog {
-    /// Adds the motions of an accepted increment: its number and load.
-    pub fn add(&mut self, increment: u32, load: f64, motions: &[UnforcedMotion]) {
-        for motion in motions {
-            let range = self.0.entry(motion.body).or_insert(UnforcedRange {
+    /// Adds the findings of an accepted increment: its number and load.
+    pub fn add(&mut self, increment: u32, load: f64, findings: &[PlaceFinding]) {
+        for finding in findings {
+            let motion = match finding {
+                PlaceFinding::Unforced(motion) => motion,
+                PlaceFinding::Slipped(node) => {
+                    let on = self.slipped.entry(node.surface).or_insert(SlippedNodes {
+                        slaves: BTreeSet::new(),
+                        since: (increment, load),
+                        farthest: 0.0,
+                    });
+                    on.slaves.insert(node.slave);
+                    on.farthest = on.farthest.max(node.past);
+                    continue;
+                }
+            };
+            let range = self.moved.entry(motion.body).or_insert(UnforcedRange {
                 increments: increment..=increment,
                 loads: [load; 2],
                 farthest: 0.0,
@@ -108,7 +165,7 @@ impl UnforcedLog {
 
     /// One sentence per body that moved without a force.
     fn words(&self, model: &Model) -> Vec<String> {
-        let moved = self.0.iter().map(|(&body, range)| {
+        let moved = self.moved.iter().map(|(&body, range)| {
             let name = &model.bodies[body].name;
             let [from, to] = range.loads;
             let within = match (range.increments.start(), range.increments.end()) {
@@ -130,39 +187,60 @@ impl UnforcedLog {
         moved.collect()
     }
 
-    /// Warnings about the places of bodies after a run: those that moved without a force, and those that overlap in the last
-    /// accepted state.
+    /// One sentence per surface off which nodes slipped.
+    fn slipped_words(&self, model: &Model) -> Vec<String> {
+        let slipped = self.slipped.iter().map(|(&surface, found)| {
+            let slaves = found.slaves.iter().map(|&slave| names::slave(model, slave));
+            let (surface, (increment, load)) = (&model.surfaces[surface].name, found.since);
+            let [are, touched] = match found.slaves.len() {
+                1 => ["is", "it touched there or starts"],
+                _ => ["are", "they touched there or start"],
+            };
+            format!(
+                "{} {are} up to {} past the end of surface {surface} from increment {increment} (load {}) on: {touched} flush with it, \
+                 but no contact force acts past the end, and pressures next to it are too high. Set surfaces.{surface}.past_ends=0.5",
+                first_of(slaves, MOST_NODES, ", "),
+                sig4(found.farthest),
+                shortest(load)
+            )
+        });
+        slipped.collect()
+    }
+
+    /// Warnings about the places of bodies after a run: those that moved without a force, nodes that slipped off the end of a
+    /// surface, and bodies that overlap in the last accepted state.
     pub fn warnings(&self, model: &Model, last: &IncrementStart) -> Vec<String> {
         let mut all = self.words(model);
+        all.extend(self.slipped_words(model));
         all.extend(overlaps::at_end(model, last));
         all
     }
 }
 
-/// Watches the accepted increments of a run for bodies that move without a force.
+/// Watches the accepted increments of a run for bodies that move without a force, and for nodes that slip off an end.
 pub struct UnforcedWatch {
     bodies: FreeBodies,
-    /// Displacements after the last accepted increment.
-    u: Arc<Vec<f64>>,
+    /// The last accepted state.
+    last: Arc<IncrementStart>,
     log: UnforcedLog,
 }
 
 impl UnforcedWatch {
     /// Starts to watch a run of a model from its last accepted state.
-    pub fn new(model: &Model, start: &IncrementStart) -> UnforcedWatch {
+    pub fn new(model: &Model, start: &Arc<IncrementStart>) -> UnforcedWatch {
         UnforcedWatch {
             bodies: FreeBodies::new(model),
-            u: start.u.clone(),
+            last: start.clone(),
             log: UnforcedLog::default(),
         }
     }
 
     /// Records an accepted increment and the state at its end.
-    pub fn see(&mut self, model: &Model, event: &Event, last: &IncrementStart) {
-        let motions = self.bodies.motions(model, event, [&self.u, &last.u]);
+    pub fn see(&mut self, model: &Model, event: &Event, last: &Arc<IncrementStart>) {
+        let found = self.bodies.findings(model, event, [&self.last, last]);
         self.log
-            .add(event.position.increment, event.load_factor, &motions);
-        self.u = last.u.clone();
+            .add(event.position.increment, event.load_factor, &found);
+        self.last = last.clone();
     }
 
     /// The motions so far.

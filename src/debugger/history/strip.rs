@@ -5,7 +5,7 @@
 //! iteration in which a node moves to another element takes 4 more bytes per node; the start of an increment
 //! and the end of a major iteration add their norms.
 
-use crate::explain::unforced::UnforcedMotion;
+use crate::explain::unforced::PlaceFinding;
 use std::sync::Arc;
 use stickslip_core::{
     ContactRecord, Event, Failure, Forced, Mode, Model, Norms, Outcome, Position, State,
@@ -116,8 +116,8 @@ pub struct Strip {
     pub first: Option<Box<Norms>>,
     /// Norms after the iteration, if a major iteration ended successfully.
     pub after: Option<Box<Norms>>,
-    /// Bodies that moved without a force in the increment that was accepted here.
-    pub unforced: Box<[UnforcedMotion]>,
+    /// Bodies that moved without a force in the increment that was accepted here, and nodes past the ends of surfaces.
+    pub unforced: Box<[PlaceFinding]>,
     /// Wall time of the solve; not part of the state, and never compared.
     pub seconds: f32,
     /// One byte per slave node: bits 0-1 mode before, 2-3 next mode, 4 forced once, 5 held, 6 held in a corner,

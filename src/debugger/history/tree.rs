@@ -200,8 +200,8 @@ impl Tree {
     pub fn push(&mut self, mut frame: Frame, mut strip: Strip) {
         if let Some(tip) = self.line.frames.last() {
             if let Some(event) = frame.event.as_ref().filter(|_| strip.kind.is_accepted()) {
-                let u = [tip, &frame].map(|frame| &frame.state.start.u[..]);
-                strip.unforced = self.facts.free.motions(&self.model, event, u).into();
+                let states = [tip, &frame].map(|frame| &*frame.state.start);
+                strip.unforced = self.facts.free.findings(&self.model, event, states).into();
             }
             copy(&mut frame, tip);
         }

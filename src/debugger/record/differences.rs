@@ -14,7 +14,7 @@ use std::fmt::{self, Debug};
 use stickslip_core::linear::singular::LooseMotion;
 use stickslip_core::{Failure, Norms, Rule, Singular, Status};
 use stickslip_scene::format::paths;
-use stickslip_scene::{Scene, joined, shown, sig2, sig4};
+use stickslip_scene::{Scene, joined, shortest, shown, sig2, sig4};
 
 /// Largest relative difference of equal numbers.
 pub const TOLERANCE: f64 = 1e-9;
@@ -59,6 +59,8 @@ pub struct Differences {
     tolerance: f64,
     /// Scales of forces and lengths.
     scales: [f64; 2],
+    /// Increments and load factors of both sides, if the increments differ.
+    apart: Option<[(u32, f64); 2]>,
 }
 
 /// A value of one side.
@@ -102,6 +104,8 @@ pub fn compare_within(a: &Snapshot, b: &Snapshot, tolerance: f64) -> Differences
             force(&a.state).max(force(&b.state)),
             length(a).max(length(b)),
         ],
+        apart: (a.position.increment != b.position.increment)
+            .then(|| [a, b].map(|one| (one.position.increment, one.state.load_factor))),
     };
     found.scenes(a, b);
     let (left, right) = (&a.state, &b.state);
@@ -197,6 +201,33 @@ fn shear(snapshot: &Snapshot) -> Vec<Field> {
 }
 
 impl Differences {
+    /// A table of the rows that differ most, and the number of the others: first what is compared exactly, of the whole state and
+    /// then of nodes, then numbers. A line before it says if the states are not of the same increment.
+    pub fn largest(&self, most: usize) -> String {
+        let mut rows: Vec<&Difference> = self.rows.iter().collect();
+        rows.sort_by(|a, b| {
+            let ratio = |row: &Difference| {
+                row.apart
+                    .map_or(f64::INFINITY, |(apart, most)| apart / most)
+            };
+            let order = ratio(b).total_cmp(&ratio(a));
+            order.then(a.node.is_some().cmp(&b.node.is_some()))
+        });
+        let apart = self.apart.map(|[(left, at), (right, found)]| {
+            format!(
+                "the states are of increments {left} and {right} (load {} and {}): equal numbers of minor iterations end in \
+                 different increments\n",
+                shortest(at),
+                shortest(found)
+            )
+        });
+        let mut lines = table(rows);
+        let more = self.rows.len().saturating_sub(most);
+        lines.truncate(most + 1);
+        lines.extend((more > 0).then(|| format!("and {more} more")));
+        apart.unwrap_or_default() + &joined(lines, "\n") + "\n"
+    }
+
     /// Whether there are no differences.
     pub fn is_empty(&self) -> bool {
         self.rows.is_empty()
@@ -393,20 +424,24 @@ fn status(status: &Status) -> String {
 
 impl fmt::Display for Differences {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let apart = |row: &Difference| {
-            row.apart
-                .map(|(apart, allowed)| format!("{} > {}", sig4(apart), sig2(allowed)))
-                .unwrap_or_default()
-        };
-        let mut lines = vec![["", "left", "right", "apart > allowed"].map(str::to_owned)];
-        lines.extend(
-            self.rows
-                .iter()
-                .map(|r| [r.what(), r.left.clone(), r.right.clone(), apart(r)]),
-        );
-        for line in shown::aligned(&lines, lines[0].len()) {
+        for line in table(&self.rows) {
             writeln!(f, "{line}")?;
         }
         Ok(())
     }
+}
+
+/// Lines of a table of differences, with a head.
+fn table<'a>(rows: impl IntoIterator<Item = &'a Difference>) -> Vec<String> {
+    let apart = |row: &Difference| {
+        row.apart
+            .map(|(apart, allowed)| format!("{} > {}", sig4(apart), sig2(allowed)))
+            .unwrap_or_default()
+    };
+    let mut lines = vec![["", "left", "right", "apart > allowed"].map(str::to_owned)];
+    lines.extend(
+        rows.into_iter()
+            .map(|r| [r.what(), r.left.clone(), r.right.clone(), apart(r)]),
+    );
+    shown::aligned(&lines, lines[0].len())
 }

@@ -174,7 +174,9 @@ impl Layout {
                     let here = at!["loads", k];
                     let scale = factor(&here.then("scale"), scale)?;
                     let forces = volumes::forces(&here, names, bodies, on, [*x, *y])?;
-                    made.extend(self.acting(&here.then("on"), names, on, forces, &scale)?);
+                    let parts = self.acting(&here.then("on"), names, on, forces, &scale)?;
+                    let volume = Some(k);
+                    made.extend(parts.into_iter().map(|load| Load { volume, ..load }));
                     continue;
                 }
                 LoadSpec::Pressure {
@@ -229,6 +231,7 @@ impl Layout {
                         dof,
                         value,
                         scale: scale.clone(),
+                        volume: None,
                     });
                 }
             }
@@ -260,6 +263,7 @@ impl Layout {
                     dof: self.dofs.first[node] + k,
                     value,
                     scale: scale.clone(),
+                    volume: None,
                 });
             }
         }

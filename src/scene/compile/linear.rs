@@ -333,6 +333,7 @@ pub(super) fn free_motions(spec: &Spec, bodies: &[Body], dofs: &Dofs) -> Vec<Loa
             dof: place(k),
             value,
             scale: Factor::default(),
+            volume: None,
         }));
     }
     loads
