@@ -47,7 +47,7 @@ impl Recovery for Fallback {
             return None;
         }
         let (by, from) = (*self, last_half(state));
-        let rest = from.rest(stalled.last_accepted().load_factor);
+        let rest = from.rest(state.start.load_factor);
         let part = match by {
             Fallback::Section => rest.section(),
             Fallback::Touching => state.sub_increment,
@@ -119,7 +119,7 @@ impl Fallback {
             Fallback::Held => stalled.can_hold(why),
             Fallback::Longer => true,
             Fallback::Section => {
-                let rest = last_half(state).rest(stalled.last_accepted().load_factor);
+                let rest = last_half(state).rest(state.start.load_factor);
                 // Without a least increment of the scene, the section may be smaller than 1/64.
                 let least = stalled.model.least;
                 !stalled.is_given() && least.is_none_or(|least| rest.section().size() >= least)

@@ -4,7 +4,7 @@ use super::fallback::{DEEPER, Fallback};
 use crate::model::{Body, Factor, Jumps};
 use crate::plane::max_abs;
 use crate::strategy;
-use crate::{Failure, IncrementStart, Mode, Model, Singular, Source, State, SubIncrement};
+use crate::{Failure, Mode, Model, Singular, Source, State, SubIncrement};
 
 /// Minimum size of a half, as a fraction of the whole increment.
 const SMALLEST_HALF: f64 = 1e-9;
@@ -110,16 +110,17 @@ impl FailedIncrement<'_> {
             && self.state.record.searched.released != Some(start)
     }
 
-    /// The last accepted state; a damped motion of the search has another start.
-    pub fn last_accepted(&self) -> &IncrementStart {
-        let origin = self.state.record.searched.origin.as_ref();
-        origin.unwrap_or(&self.state.start)
-    }
-
     /// Twice the increment from the last accepted state, at most to the end of the leg. `None` if it ends before this load factor.
     pub fn longer(&self, end: f64) -> Option<SubIncrement> {
-        let (start, size) = (self.last_accepted(), self.state.controls.increment);
-        let longer = SubIncrement::whole(self.model, start.place(), 2.0 * size);
+        // A damped motion has another start.
+        let state = self.state;
+        let start = state
+            .record
+            .searched
+            .origin
+            .as_ref()
+            .unwrap_or(&state.start);
+        let longer = SubIncrement::whole(self.model, start.place(), 2.0 * state.controls.increment);
         (longer.size() > (end - start.load_factor).abs()).then_some(longer)
     }
 
