@@ -91,7 +91,8 @@ fn numbers_that_are_none_and_extreme_ones_survive() {
 fn a_changed_force_scale_or_limit_and_a_repeated_row_are_differences() {
     let file = recorded().swap_remove(0);
     let snapshot = Snapshot::read(&file).unwrap();
-    let changes: [(&str, fn(&mut Snapshot)); 3] = [
+    type Change = fn(&mut Snapshot);
+    let changes: [(&str, Change); 3] = [
         ("residual before, force scale", |snapshot| {
             snapshot.state.before.as_mut().unwrap().scale = 1e9;
         }),

@@ -220,39 +220,3 @@ fn no_search_spends_more_than_its_limit() {
     // The attempt in which the limit is reached is finished: at most 60 major iterations, here with one minor iteration each.
     assert!(limited.spent <= limit + 120, "{} of {limit}", limited.spent);
 }
-
-/// The motion that helped last is tried first. If it fails, the others start at the last equilibrium, not at a state on its way.
-#[test]
-fn fallbacks_after_a_failed_motion_start_at_the_last_equilibrium() {
-    let file = concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/tests/findings/block-on-a-slope.ron"
-    );
-    let scene = Scene::open(file, &[]).unwrap_or_else(|error| panic!("{error}"));
-    let mut stepper = Stepper::new(Arc::new(scene.model));
-    let mut last = stepper.state().clone();
-    while let Some(event) = stepper.step() {
-        match &event.outcome {
-            Outcome::Increment { .. } => last = stepper.state().clone(),
-            Outcome::Fallback { .. } => break,
-            _ => {}
-        }
-    }
-    last.record.searched.adopted = Some(Fallback::Release);
-    stepper.restore(&last);
-    let mut tried = Vec::new();
-    while let Some(event) = stepper.step() {
-        let Outcome::Fallback { by, .. } = event.outcome else {
-            assert!(!matches!(event.outcome, Outcome::Failed(_)));
-            continue;
-        };
-        tried.push(by);
-        let state = stepper.state();
-        if by == Fallback::Section {
-            assert_eq!(state.start.load_factor, last.start.load_factor);
-            assert_eq!(state.sub_increment.from, state.start.load_factor);
-            break;
-        }
-    }
-    assert_eq!(tried, [Fallback::Release, Fallback::Section]);
-}
