@@ -50,7 +50,7 @@ fn the_shape_shows_forces_where_they_act_loads_supports_and_magnified_displaceme
     debugger.type_keys("Enter");
     let said = &debugger.app.message.text;
     assert!(
-        said.contains("invalid factor from 1 to 1e9 'half'"),
+        said.contains("invalid factor 'half'; expected a number from 1 to 1e9"),
         "{said}"
     );
 }

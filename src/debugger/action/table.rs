@@ -134,7 +134,7 @@ pub const ACTIONS: &[ActionEntry] = &[
     entry(Go, "next", "[COUNT]", &["n", "F10"], "next", "Go to the end of this major iteration", Forward(Unit::Major)),
     entry(Go, "finish", "[COUNT]", &["f", "Shift-F11"], "finish", "Go to the end of this increment", Forward(Unit::Increment)),
     entry(Go, "continue", "", &["c", "F5"], "continue", "Continue to a breakpoint, a failure or the end", Forward(Unit::Run)),
-    entry(Go, "reverse-step", "[COUNT]", &["S"], "", "Go back by one minor iteration or intervention", Back(Unit::Minor)),
+    entry(Go, "reverse-step", "[COUNT]", &["S"], "", "Go back one iteration or intervention", Back(Unit::Minor)),
     entry(Go, "reverse-next", "[COUNT]", &["N"], "", "Go back by one major iteration", Back(Unit::Major)),
     entry(Go, "reverse-finish", "[COUNT]", &["F"], "", "Go back by one increment", Back(Unit::Increment)),
     entry(Go, "reverse-continue", "", &["C"], "", "Go back to the last breakpoint hit, the last failure or the start", Back(Unit::Run)),

@@ -61,17 +61,18 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let (shown, compared) = shown(inner, tree, &all, (app, view));
     let texts: Vec<RowTexts> = order
         .iter()
-        .map(|&(number, depth)| RowTexts::new(&all[number], depth, view))
+        .map(|&(number, depth)| RowTexts::new(tree, &all[number], depth, view))
         .collect();
     let widest = |width: fn(&RowTexts) -> usize| texts.iter().map(width).max().unwrap_or(0);
     // Columns of all rows, also of those that are scrolled out.
     let room = width.saturating_sub(widest(|texts| texts.cost.width()) + 7);
-    let names = widest(|texts| texts.name.width()).min(room * 3 / 5);
+    let most = room.saturating_sub(widest(|texts| texts.verdict.width()));
+    let names = widest(|texts| texts.name.width()).min(most.max(room * 3 / 5));
     let mut lines: Vec<Line> = shown
         .map(|row| {
             let branch = &all[order[row].0];
             let columns = [names, room - names];
-            line(tree, branch, &texts[row], row == at, columns, app)
+            line(branch, &texts[row], row == at, columns, app)
         })
         .collect();
     if all.len() == 1 && !view.is_finished() {
@@ -111,11 +112,12 @@ pub fn row_at(area: Rect, app: &App, view: &View, at: Position) -> Option<usize>
 struct RowTexts {
     /// The name, behind its place in the tree.
     name: String,
+    verdict: String,
     cost: String,
 }
 
 impl RowTexts {
-    fn new(branch: &Summary, depth: usize, view: &View) -> RowTexts {
+    fn new(tree: &Tree, branch: &Summary, depth: usize, view: &View) -> RowTexts {
         let twig = match depth {
             0 => String::new(),
             depth => format!("{}└ ", "  ".repeat(depth - 1)),
@@ -124,6 +126,7 @@ impl RowTexts {
         let (minors, majors) = (branch.whole.minors, branch.whole.majors);
         RowTexts {
             name: format!("{twig}{}", branch.name),
+            verdict: verdicts::describe(tree, &branch.verdict),
             cost: match view.model.finished {
                 None => format!("  load {load}  {minors} minor, {majors} major"),
                 Some(_) => format!("  time {load}  {minors} iterations"),
@@ -133,7 +136,6 @@ impl RowTexts {
 }
 
 fn line<'a>(
-    tree: &Tree,
     branch: &Summary,
     texts: &RowTexts,
     selected: bool,
@@ -143,10 +145,9 @@ fn line<'a>(
     let theme = &app.theme;
     let current = if branch.is_current { "●" } else { " " };
     let (glyph, style) = glyph(&branch.verdict, app);
-    let verdict = verdicts::describe(tree, &branch.verdict);
     let name_style = if selected { theme.selected } else { theme.text };
     let [name, pad] = paint::cell(&texts.name, names, name_style);
-    let [verdict, verdict_pad] = paint::cell(&verdict, room, style);
+    let [verdict, verdict_pad] = paint::cell(&texts.verdict, room, style);
     Line::from(vec![
         paint::cursor(selected, theme),
         Span::styled(current, theme.strong),
