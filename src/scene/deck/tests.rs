@@ -204,6 +204,16 @@ fn errors_in_the_scene_have_the_line_of_the_deck() {
             "ABOVE, BELOW\n*CONTACT PAIR, INTERACTION=ROUGH, TYPE=NODE TO SURFACE, ADJUST=0.\nBELOW, ABOVE",
             "job.inp:41:1: ADJUST must be the same",
         ),
+        (
+            "TOP, 2, 2, -0.02\n",
+            "TOP, 2, 2, -0.02\n4, 6, 6, 0.1\n",
+            "job.inp:50:1: node 4 is not on a beam, so it has no rotation to prescribe",
+        ),
+        (
+            "*END STEP",
+            "*CLOAD\n1, 2, -1.\n*CLOAD, AMPLITUDE=FORTH\n1, 2, -1.\n*END STEP",
+            "job.inp:53:1: the load is given again in this step, with another amplitude",
+        ),
     ];
     for (from, to, begin) in cases {
         let found = refusal(&but(BLOCK, from, to));
@@ -219,7 +229,7 @@ fn op_new_may_repeat_all_values_but_not_free_a_node() {
         but(
             BLOCK,
             "*BOUNDARY, AMPLITUDE=FORTH\n",
-            &format!("*BOUNDARY{op}\n{lines}*BOUNDARY, AMPLITUDE=FORTH\n"),
+            &format!("*BOUNDARY{op}\n{lines}*BOUNDARY{op}, AMPLITUDE=FORTH\n"),
         )
     };
     let spec = |text: &str| {
@@ -266,6 +276,12 @@ fn op_new_removes_the_pressures_of_earlier_steps() {
     };
     assert_eq!(second(""), [(7.0, Some(1.0)), (5.0, Some(1.0))]);
     assert_eq!(second(", OP=NEW"), [(7.0, Some(0.0)), (5.0, Some(1.0))]);
+}
+
+#[test]
+fn nodes_of_beams_are_not_reported_as_idle() {
+    let beam = include_str!("../../../tests/decks/beam-on-a-post.inp");
+    assert_eq!(scene(beam).names().notes(1), [""; 0]);
 }
 
 #[test]
