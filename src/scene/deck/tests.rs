@@ -279,6 +279,30 @@ fn op_new_removes_the_pressures_of_earlier_steps() {
 }
 
 #[test]
+fn slave_surfaces_of_nodes_are_noted_with_their_reason() {
+    let of_nodes = but(
+        BLOCK,
+        "*SURFACE, NAME=BELOW\nBLOCK, S1\n",
+        "*SURFACE, NAME=BELOW, TYPE=NODE\n1\n2\n3\n",
+    );
+    let linear = but(&of_nodes, "=HARD", "=LINEAR\n1000., 1e-9");
+    let (areas, sides) = (
+        "job.inp:42: the slave is a surface of nodes: the areas for the stiffness",
+        "job.inp:42: SURFACE TO SURFACE is solved as node to surface, because the slave is a surface of nodes",
+    );
+    let has = |text: &str, begin: &str| {
+        let remarks = scene(text).remarks;
+        remarks.iter().any(|remark| remark.starts_with(begin))
+    };
+    let [hard_areas, hard_sides] = [areas, sides].map(|note| note.replace(":42:", ":41:"));
+    assert!(has(&linear, areas) && !has(&linear, sides));
+    assert!(!has(&of_nodes, &hard_areas) && !has(&of_nodes, &hard_sides));
+    assert!(has(&but(&of_nodes, "0.4\n", "0.4, 1e5\n"), &hard_areas));
+    let faces = but(&linear, "TYPE=NODE TO", "TYPE=SURFACE TO");
+    assert!(has(&faces, areas) && has(&faces, sides));
+}
+
+#[test]
 fn nodes_of_beams_are_not_reported_as_idle() {
     let beam = include_str!("../../../tests/decks/beam-on-a-post.inp");
     assert_eq!(scene(beam).names().notes(1), [""; 0]);
