@@ -302,6 +302,29 @@ fn slave_surfaces_of_nodes_are_noted_with_their_reason() {
     assert!(has(&faces, areas) && has(&faces, sides));
 }
 
+/// Only where the nodes do not tell the sides does a pair name them; a name must be that of a chain.
+#[test]
+fn a_pair_names_its_sides_where_the_nodes_do_not_tell_them() {
+    assert!(
+        scene(BLOCK)
+            .spec
+            .slaves
+            .iter()
+            .all(|own| own.sides.is_empty())
+    );
+    // The ends of the block have all their nodes in this surface, too.
+    let both = but(BLOCK, "BLOCK, S1\n", "BLOCK, S1\nBLOCK, S3\n");
+    let mut spec = scene(&both).spec;
+    assert_eq!(spec.slaves[0].sides, ["n.BELOW-SIDES", "n.BELOW-SIDES-2"]);
+    spec.slaves[0].sides[0] = "n.BESIDE".to_owned();
+    let error = Scene::from_spec("scene.ron", spec).map(drop).unwrap_err();
+    let told = error.to_string();
+    assert!(
+        told.contains("slaves[0].sides[0]: ") && told.contains("n.BESIDE"),
+        "{told}"
+    );
+}
+
 #[test]
 fn nodes_of_beams_are_not_reported_as_idle() {
     let beam = include_str!("../../../tests/decks/beam-on-a-post.inp");
