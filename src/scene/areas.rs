@@ -9,10 +9,14 @@
 //!
 //! where w is the thickness across the plane, or 2π x in axisymmetry; w = 1 for beams, whose sides are their elements. On a
 //! straight side of length L with w = 1 the areas are L/2 for each of 2 nodes, and L/6, 4L/6, L/6 for 3 nodes. A side belongs to
-//! the slave surface if all its nodes are slaves of one pair. A node without such a side (for example a single slave node) gets
-//! half of each side of its body that contains it. Bodies given by matrices have no sides.
+//! the slave surface if the pair names it (`sides`), or, if the pair names none, if all its nodes are slaves of this pair. A node
+//! without such a side (for example a single slave node) gets half of each side of its body that contains it. Bodies given by
+//! matrices have no sides.
 
-use std::collections::HashMap;
+use super::nodes::Names;
+use crate::Spec;
+use crate::format::error::{Fault, at};
+use std::collections::{HashMap, HashSet};
 use stickslip_core::fem::lagrange::{MAX_NODES, gauss, shape};
 use stickslip_core::{Body, BodyKind, Elastic, Node, Solid};
 
@@ -26,28 +30,69 @@ pub(super) struct AreaSide<'a> {
     pub made_of: Option<&'a Elastic>,
 }
 
+/// The sides that the pairs name, by their nodes in ascending order; `None` for a pair that names none.
+#[derive(Debug, Default)]
+pub(super) struct NamedSides(Vec<Option<HashSet<Vec<usize>>>>);
+
+impl NamedSides {
+    /// The sides of all pairs of a scene.
+    pub fn from_spec(spec: &Spec, names: &Names) -> Result<NamedSides, Fault> {
+        let mut all = Vec::with_capacity(spec.slaves.len());
+        for (k, group) in spec.slaves.iter().enumerate() {
+            let mut own = HashSet::new();
+            for (j, name) in group.sides.iter().enumerate() {
+                let chain = names.chain(name);
+                let chain = chain.map_err(|why| Fault::new(at!["slaves", k, "sides", j], why))?;
+                let sides = chain.pieces().into_iter().flatten();
+                own.extend(sides.map(|side| ascending(&side)));
+            }
+            all.push((!group.sides.is_empty()).then_some(own));
+        }
+        Ok(NamedSides(all))
+    }
+
+    /// Whether a side belongs to a pair; `None` if the pair names no sides.
+    pub fn has(&self, pair: usize, side: &AreaSide<'_>) -> Option<bool> {
+        let own = self.0.get(pair)?.as_ref()?;
+        Some(own.contains(&ascending(side.nodes)))
+    }
+}
+
+fn ascending(nodes: &[usize]) -> Vec<usize> {
+    let mut nodes = nodes.to_vec();
+    nodes.sort_unstable();
+    nodes
+}
+
 /// Areas of the slave nodes, where `pair_of` is the pair of each; `None` for other nodes and for nodes on no side. In a pair with
 /// a compliance (`gives`), a node on the axis has no area.
 pub(super) fn tributary(
     nodes: &[Node],
     bodies: &[Body],
     pair_of: &[Option<usize>],
+    named: &NamedSides,
     gives: impl Fn(usize) -> bool,
 ) -> Vec<Option<f64>> {
     let sides: Vec<AreaSide<'_>> = bodies.iter().flat_map(sides).collect();
     let mut areas = vec![None; nodes.len()];
     let mut add = |node: usize, area: f64| *areas[node].get_or_insert(0.0) += area;
     for side in &sides {
-        let pair = pair_of[side.nodes[0]];
-        if pair.is_some() && side.nodes.iter().all(|&node| pair_of[node] == pair) {
-            let mut shares = shares(side, nodes);
-            if pair.is_some_and(&gives) {
-                off_axis(side, nodes, &mut shares);
+        let first = pair_of[side.nodes[0]];
+        let is_whole = side.nodes.iter().all(|&node| pair_of[node] == first);
+        // Nodes of a named side may be slaves of another pair, or of none.
+        let pair =
+            |node: usize| pair_of[node].filter(|&pair| named.has(pair, side).unwrap_or(is_whole));
+        let Some(any) = side.nodes.iter().find_map(|&node| pair(node)) else {
+            continue;
+        };
+        let mut shares = shares(side, nodes);
+        if gives(any) {
+            off_axis(side, nodes, &mut shares);
+        }
+        for (&node, share) in side.nodes.iter().zip(shares) {
+            if pair(node).is_some() {
+                add(node, share);
             }
-            side.nodes
-                .iter()
-                .zip(shares)
-                .for_each(|(&node, share)| add(node, share));
         }
     }
     let mut alone: Vec<Option<f64>> = vec![None; nodes.len()];
@@ -231,6 +276,7 @@ mod tests {
             &row(3, 2.0),
             &[beam(vec![vec![0, 1], vec![1, 2]])],
             &[Some(0); 3],
+            &NamedSides::default(),
             |_| false,
         );
         close(&linear, &[0.5, 1.0, 0.5]);
@@ -238,6 +284,7 @@ mod tests {
             &row(3, 3.0),
             &[beam(vec![vec![0, 1, 2]])],
             &[Some(0); 3],
+            &NamedSides::default(),
             |_| false,
         );
         close(&quadratic, &[0.5, 2.0, 0.5]);
@@ -246,11 +293,21 @@ mod tests {
     #[test]
     fn a_single_slave_node_has_half_of_its_sides() {
         let bodies = [beam(vec![vec![0, 1], vec![1, 2]])];
-        let found = tributary(&row(3, 2.0), &bodies, &[None, Some(0), None], |_| false);
+        let found = tributary(
+            &row(3, 2.0),
+            &bodies,
+            &[None, Some(0), None],
+            &NamedSides::default(),
+            |_| false,
+        );
         assert_eq!(found, [None, Some(1.0), None]);
-        let apart = tributary(&row(3, 2.0), &bodies, &[Some(1), Some(0), Some(1)], |_| {
-            false
-        });
+        let apart = tributary(
+            &row(3, 2.0),
+            &bodies,
+            &[Some(1), Some(0), Some(1)],
+            &NamedSides::default(),
+            |_| false,
+        );
         assert_eq!(apart, [Some(0.5), Some(1.0), Some(0.5)]);
     }
 
@@ -268,6 +325,7 @@ mod tests {
             &nodes,
             &[beam(vec![(0..5).collect()])],
             &[Some(0); 5],
+            &NamedSides::default(),
             |_| false,
         );
         let sum: f64 = found.iter().flatten().sum();
@@ -281,6 +339,7 @@ mod tests {
                 &row(m, 1.0),
                 &[beam(vec![(0..m).collect()])],
                 &[Some(0); 9][..m],
+                &NamedSides::default(),
                 |_| false,
             );
             assert!(

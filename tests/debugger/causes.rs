@@ -48,6 +48,17 @@ fn each_deck_is_explained_by_its_cause_and_the_advised_lines_help_in_calculix() 
     }
 }
 
+/// A beam that is held along x and y at one node can turn about it.
+#[test]
+fn a_beam_is_held_by_the_rotation_of_its_node() {
+    let beam = "*NODE\n1, 0., 0.\n2, 1., 0.\n3, 2., 0.\n*ELEMENT, TYPE=B32, ELSET=B\n1, 1, 2, 3\n\
+                *MATERIAL, NAME=M\n*ELASTIC\n1.E6, 0.\n*BEAM SECTION, ELSET=B, MATERIAL=M, SECTION=RECT\n1., .1\n0., 0., -1.\n\
+                *BOUNDARY\n1, 1, 6\n*STEP\n*STATIC\n1., 1.\n*CLOAD\n3, 2, -.01\n*END STEP\n";
+    assert_eq!(causes(beam), [""; 0]);
+    let turning = beam.replace("1, 1, 6\n", "1, 1, 2\n");
+    assert_eq!(causes(&turning), ["unconnected body"]);
+}
+
 #[test]
 fn rules_are_silent_on_the_cured_decks() {
     for row in rows()

@@ -22,6 +22,8 @@ mod legs;
 mod renewed;
 // The condensed interface takes the steps of the whole system, whatever the bodies.
 mod condensation;
+// Loads of decks over several steps, and supports by name.
+mod deck_loads;
 // Constant pressure across SURFACE TO SURFACE contacts of decks.
 mod deck_patches;
 // Thermal expansion in decks, free and restrained.

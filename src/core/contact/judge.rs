@@ -265,7 +265,7 @@ impl Judge {
             .iter()
             .copied()
             .filter(|&other| other != foot.spot.surface);
-        let through = through(seen, slave, others, near, &mut self.others);
+        let through = through(seen, (slave, point), others, near, &mut self.others);
         if through > near {
             let numbers = JudgedNumbers {
                 gap: -through,
@@ -427,10 +427,11 @@ impl Judge {
 
 /// Depth (length) by which a slave node has passed through a surface other than its nearest since the last accepted state; 0 if
 /// it has not. Only a node that was above the surface and is now below it counts, not one that went round an end. `others` are
-/// the surfaces that the node may touch, except the nearest.
+/// the surfaces that the node may touch, except the nearest. `point` is the node's position without the penetration that its
+/// spring allows: where two surfaces continue each other, the node is as deep in the other one.
 fn through(
     seen: &JudgedState,
-    slave: usize,
+    (slave, point): (usize, [f64; 2]),
     others: impl Iterator<Item = usize>,
     near: f64,
     feet: &mut Vec<ClosestPoint>,
@@ -443,7 +444,7 @@ fn through(
         (!at_end).then(|| signed_gap(foot, point, seen.surfaces, positions))
     };
     others.fold(0.0, |most: f64, other| {
-        let now = over(other, seen.point(slave), seen.now).filter(|gap| *gap < -near);
+        let now = over(other, point, seen.now).filter(|gap| *gap < -near);
         let Some(gap) = now else {
             return most;
         };

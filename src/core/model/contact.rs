@@ -155,8 +155,8 @@ documented! {
         Node,
         /// Gauss points of its sides (surface to surface), at least 10 per side, on each part of a side that lies over one side of
         /// the undeformed masters. A point is a weighted sum of the nodes of its side. A side belongs to the slave
-        /// surface if all its nodes do. Only for solids, and not for hard contact or rigid ties, which would be more equations
-        /// than a side has unknowns.
+        /// surface if all its nodes do, or if `sides` names it. Only for solids, and not for hard contact or rigid ties, which
+        /// would be more equations than a side has unknowns.
         Surface,
     }
 }

@@ -2,12 +2,13 @@
 //! position.
 //!
 //! Names get the instance's name and a dot in front, as other cards refer to them (`PART-1-1.TOP`). A single instance keeps the
-//! numbers of its part; of several, the k-th adds k B to them, where B is the smallest power of ten above all numbers.
+//! numbers of its part, unless the assembly has one of them, too; of several, the k-th adds k B to them, where B is the smallest
+//! power of ten above all numbers.
 
 use super::cards::{Card, cells, number_or_zero, short};
 use super::source::{Done, SourceLine};
 use crate::bail;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The instance that a card belongs to; the default belongs to none.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -55,7 +56,8 @@ pub(super) fn assemble<'c, 't>(cards: &'c [Card<'t>]) -> Done<Assembled<'c, 't>>
         instances: vec![Instance::default()],
     };
     let mut parts: BTreeMap<&str, &[Card<'t>]> = BTreeMap::new();
-    let several = cards.iter().filter(|card| card.key == "INSTANCE").count() > 1;
+    let count = cards.iter().filter(|card| card.key == "INSTANCE").count();
+    let is_offset = count > 1 || (count == 1 && has_common_numbers(cards));
     let mut rest = cards;
     while let Some((card, after)) = rest.split_first() {
         rest = after;
@@ -86,7 +88,7 @@ pub(super) fn assemble<'c, 't>(cards: &'c [Card<'t>]) -> Done<Assembled<'c, 't>>
                 }
                 let number = found.instances.len();
                 let mut instance = instance(name, &card.lines)?;
-                instance.first = if several {
+                instance.first = if is_offset {
                     number as u64 * above(cards)
                 } else {
                     0
@@ -116,13 +118,37 @@ fn until<'c, 't>(
     Ok((body, rest.get(1..).unwrap_or_default()))
 }
 
+/// Whether a node or an element outside parts and instances has the number of one inside.
+fn has_common_numbers(cards: &[Card<'_>]) -> bool {
+    let mut numbers = [BTreeSet::new(), BTreeSet::new()];
+    let mut is_inside = false;
+    for card in cards {
+        match card.key.as_str() {
+            "PART" | "INSTANCE" => is_inside = true,
+            "ENDPART" | "ENDINSTANCE" => is_inside = false,
+            "NODE" | "ELEMENT" => {
+                let first = card.lines.iter().filter_map(|line| number(*line));
+                numbers[usize::from(is_inside)].extend(first.map(|number| (&card.key, number)));
+            }
+            _ => {}
+        }
+    }
+    let [outside, inside] = numbers;
+    !outside.is_disjoint(&inside)
+}
+
+/// The number at the beginning of a line.
+fn number(line: SourceLine<'_>) -> Option<u64> {
+    cells(line).first()?.text.parse().ok()
+}
+
 /// The smallest power of ten above the numbers of all nodes and elements.
 fn above(cards: &[Card<'_>]) -> u64 {
     let numbers = cards
         .iter()
         .filter(|card| card.key == "NODE" || card.key == "ELEMENT")
         .flat_map(|card| &card.lines)
-        .filter_map(|line| cells(*line).first()?.text.parse::<u64>().ok());
+        .filter_map(|line| number(*line));
     let digits = numbers.max().unwrap_or(0).max(1).ilog10() + 1;
     10_u64.checked_pow(digits).unwrap_or(u64::MAX)
 }

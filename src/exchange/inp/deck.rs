@@ -296,8 +296,10 @@ pub struct Step {
     pub new_motions: bool,
     /// Whether point loads of earlier steps are removed.
     pub new_forces: bool,
-    /// Whether element loads of earlier steps are removed.
+    /// Whether pressures of earlier steps are removed.
     pub new_pressures: bool,
+    /// Whether volume forces of earlier steps are removed.
+    pub new_weights: bool,
     /// Whether temperatures of earlier steps are removed.
     pub new_temperatures: bool,
     /// Prescribed degrees of freedom.
@@ -415,9 +417,19 @@ pub struct Weight {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Volume {
     /// Acceleration, multiplied by the density.
-    Gravity([f64; 3]),
-    /// Force per volume.
-    Force([f64; 3]),
+    Gravity {
+        /// Its components.
+        acceleration: [f64; 3],
+        /// The unit vector of the deck's direction, also of an acceleration of zero.
+        direction: [f64; 3],
+    },
+    /// Force per volume along an axis.
+    Force {
+        /// The axis, 0 to 2.
+        axis: usize,
+        /// Its size.
+        value: f64,
+    },
 }
 
 /// A warning for the user.

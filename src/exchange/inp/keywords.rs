@@ -261,7 +261,7 @@ const ONE_BY_ONE: &[(&str, Treatment)] = &[
         read(
             "isotropic, with one coefficient; used by *TEMPERATURE",
             Laws,
-            ANY,
+            &["TYPE", "ZERO"],
             Reader::expansion,
         ),
     ),
@@ -405,7 +405,7 @@ const ONE_BY_ONE: &[(&str, Treatment)] = &[
         read(
             "HARD; LINEAR as a penalty; TIED as springs in tension too, or rigidly with NODE TO SURFACE",
             Laws,
-            &["PRESSUREOVERCLOSURE", "PRESSURE-OVERCLOSURE"],
+            &["PRESSURE-OVERCLOSURE"],
             Reader::behavior,
         ),
     ),

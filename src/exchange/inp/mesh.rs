@@ -316,7 +316,14 @@ impl Reader {
             _ => {
                 let mut members = Vec::new();
                 for line in &card.lines {
-                    if let Some(cell) = cells(*line).first() {
+                    let words = cells(*line);
+                    if let Some(more) = words.get(1).filter(|_| !self.is_outline) {
+                        bail!(
+                            more,
+                            "unexpected value; a line of a surface of nodes has one node or set, without an area"
+                        );
+                    }
+                    if let Some(cell) = words.first() {
                         members.extend(self.members_of(cell, Nodes)?);
                         fits(&members, cell, "surface")?;
                     }

@@ -113,7 +113,8 @@ fn whole(sources: &Sources, is_outline: bool) -> Done<Deck> {
             }
             card.only(reading.parameters)?;
             (reading.read)(&mut reader, card)?;
-            if reading.pass == Pass::Model && reader.step.is_some() {
+            let in_steps = reader.step.is_some() || !reader.deck.steps.is_empty();
+            if reading.pass == Pass::Model && in_steps {
                 bail!(
                     card,
                     "it belongs to the model and must come before the first *STEP"

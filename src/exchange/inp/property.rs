@@ -145,6 +145,14 @@ impl Reader {
         let is_isotropic = card
             .value("TYPE")?
             .is_none_or(|kind| kind.starts_with("ISO"));
+        for line in card.lines.iter().filter(|_| is_isotropic) {
+            if let Some(more) = cells(*line).get(2) {
+                bail!(
+                    more,
+                    "unexpected value; isotropic expansion has a coefficient and a temperature"
+                );
+            }
+        }
         let single = is_isotropic && card.lines.len() == 1;
         let coefficient = card.cells().next().filter(|_| single);
         let coefficient = coefficient.map(|cell| cell.number("the coefficient of expansion"));

@@ -26,6 +26,8 @@ pub struct Reader {
     /// The step that has begun.
     pub(super) step: Option<Step>,
     pub(super) has_time: bool,
+    /// Whether the first card of each keyword in this step removes earlier values (OP=NEW).
+    pub(super) operations: HashMap<String, bool>,
     /// Whether the deck is only outlined: three-dimensional elements are read, and cards that cannot be read are skipped.
     pub(super) is_outline: bool,
     pub(super) skipped: Vec<Remark>,

@@ -45,6 +45,7 @@ impl Reader {
             );
         }
         self.has_time = false;
+        self.operations.clear();
         self.step = Some(Step {
             place: card.place,
             static_place: card.place,
@@ -159,7 +160,7 @@ impl Reader {
     }
 
     /// The amplitude named by a card, and whether the card removes earlier values.
-    fn course(&self, card: &Card<'_>) -> Done<(Option<usize>, bool)> {
+    fn course(&mut self, card: &Card<'_>) -> Done<(Option<usize>, bool)> {
         let amplitude = card.value("AMPLITUDE")?.map(|name| {
             let known = self.deck.amplitudes.iter().position(|a| a.name == name);
             known.ok_or_else(|| {
@@ -167,14 +168,30 @@ impl Reader {
                 card.wrong_at("AMPLITUDE", what)
             })
         });
-        Ok((
-            amplitude.transpose()?,
-            card.choice("OP", &["MOD", "NEW"])? == 1,
-        ))
+        let amplitude = amplitude.transpose()?;
+        let is_new = card.choice("OP", &["MOD", "NEW"])? == 1;
+        if self.step.is_none() {
+            return Ok((amplitude, is_new));
+        }
+        let first = *self.operations.entry(card.key.clone()).or_insert(is_new);
+        if first != is_new && !self.is_outline {
+            let why = format!(
+                "OP must be the same on all *{} cards of a step: CalculiX only reads that of the first one",
+                card.shown
+            );
+            return Err(card.wrong_at("OP", why));
+        }
+        Ok((amplitude, first))
     }
 
     pub(super) fn boundary(&mut self, card: &Card<'_>) -> Done {
         card.choice("TYPE", &["DISPLACEMENT"])?;
+        if self.step.is_none() && !self.deck.steps.is_empty() && !self.is_outline {
+            bail!(
+                card,
+                "it is outside the steps; it must be in a step, or before the first *STEP"
+            );
+        }
         let (amplitude, new) = self.course(card)?;
         if let Some(step) = &mut self.step {
             step.new_motions |= new;
@@ -185,11 +202,11 @@ impl Reader {
                 continue;
             };
             let place = first.place();
-            let (from, to, value) = directions(first, &words)?;
+            let (numbers, value) = directions(first, &words)?;
             let nodes = self.members_of(first, MeshKind::Nodes)?;
             let last = words.last().unwrap_or(first);
             let mut read = Vec::new();
-            for number in from..=to {
+            for number in numbers {
                 match number {
                     _ if self.is_outline => read.push(Direction::from_number(number)),
                     3..=5 if value == 0.0 => self.deck.add_note(
@@ -317,7 +334,9 @@ impl Reader {
 
     pub(super) fn load(&mut self, card: &Card<'_>) -> Done {
         let (amplitude, new) = self.course(card)?;
-        self.in_step(card)?.new_pressures |= new;
+        let step = self.in_step(card)?;
+        step.new_pressures |= new;
+        step.new_weights |= new;
         for line in &card.lines {
             let words = cells(*line);
             let [first, label, rest @ ..] = words.as_slice() else {
@@ -402,22 +421,26 @@ fn direction(cell: &CardCell<'_>, number: u64) -> Done<Direction> {
     }
 }
 
-/// First and last direction of a line of `*BOUNDARY`, and its value.
-fn directions(first: &CardCell<'_>, words: &[CardCell<'_>]) -> Done<(u64, u64, f64)> {
+/// The directions of a line of `*BOUNDARY`, and its value.
+fn directions(first: &CardCell<'_>, words: &[CardCell<'_>]) -> Done<(Vec<u64>, f64)> {
     let Some(second) = words.get(1) else {
         bail!(
             first,
             "the restrained directions are missing after the node or set"
         );
     };
-    // Abaqus' names for supports; symmetry conditions fix the direction normal to the symmetry plane.
-    match plain(second.text).as_str() {
-        "XSYMM" => return Ok((1, 1, 0.0)),
-        "YSYMM" => return Ok((2, 2, 0.0)),
-        "ZSYMM" => return Ok((3, 3, 0.0)),
-        "PINNED" => return Ok((1, 2, 0.0)),
-        "ENCASTRE" => return Ok((1, 6, 0.0)),
-        _ => {}
+    // Abaqus' names for supports; symmetry conditions fix the direction normal to the symmetry plane, and the rotations about the
+    // other two, of which only the one about z is not fixed in plane problems anyway.
+    let named: Option<&[u64]> = match plain(second.text).as_str() {
+        "XSYMM" => Some(&[1, 6]),
+        "YSYMM" => Some(&[2, 6]),
+        "ZSYMM" => Some(&[3]),
+        "PINNED" => Some(&[1, 2]),
+        "ENCASTRE" => Some(&[1, 2, 3, 4, 5, 6]),
+        _ => None,
+    };
+    if let Some(named) = named {
+        return Ok((named.to_vec(), 0.0));
     }
     let from = second.whole("a direction")?;
     let to = match words.get(2).filter(|cell| !cell.text.is_empty()) {
@@ -436,7 +459,8 @@ fn directions(first: &CardCell<'_>, words: &[CardCell<'_>]) -> Done<(u64, u64, f
             "unexpected value; the line takes a node, the first and the last direction and a value"
         );
     }
-    Ok((from, to, number_or_zero(words, 3, "the value")?))
+    let value = number_or_zero(words, 3, "the value")?;
+    Ok(((from..=to).collect(), value))
 }
 
 /// The side that a load of `*DLOAD` acts on.
@@ -471,10 +495,11 @@ fn volume(
     solids: bool,
 ) -> Done<Option<Volume>> {
     let force = || one(label, rest, "the force per volume");
+    let along = |axis: usize, value: f64| Volume::Force { axis, value };
     Ok(Some(match kind {
-        "BX" => Volume::Force([force()?, 0.0, 0.0]),
-        "BY" => Volume::Force([0.0, force()?, 0.0]),
-        "BZ" if solids => Volume::Force([0.0, 0.0, force()?]),
+        "BX" => along(0, force()?),
+        "BY" => along(1, force()?),
+        "BZ" if solids => along(2, force()?),
         "GRAV" => {
             let [size, x, y, z @ ..] = rest else {
                 bail!(
@@ -492,7 +517,10 @@ fn volume(
                     "the direction of the acceleration must lie in the plane and not be zero"
                 );
             }
-            Volume::Gravity([x, y, z].map(|part| size * part / length))
+            Volume::Gravity {
+                acceleration: [x, y, z].map(|part| size * part / length),
+                direction: [x, y, z].map(|part| part / length),
+            }
         }
         _ => return Ok(None),
     }))

@@ -287,6 +287,41 @@ fn errors_have_a_location_and_the_expected_input() {
             "0., 0., 0.5",
             "job.inp:41:9: a time without a factor; they must come in pairs",
         ),
+        (
+            "PRESSURE-OVERCLOSURE=HARD",
+            "PRESSURE OVERCLOSURE=LINEAR\n1000., 1e-9",
+            "job.inp:35:20: *SURFACE BEHAVIOR: the parameter PRESSUREOVERCLOSURE is not supported; supported are PRESSURE-OVERCLOSURE",
+        ),
+        (
+            "*ELASTIC\n",
+            "*EXPANSION, USER\n1e-3\n*ELASTIC\n",
+            "job.inp:30:13: *EXPANSION: the parameter USER is not supported; supported are TYPE, ZERO",
+        ),
+        (
+            "*ELASTIC\n",
+            "*EXPANSION, ZERO=20.\n1e-3, 20., 2e-3\n*ELASTIC\n",
+            "job.inp:31:12: unexpected value; isotropic expansion has a coefficient and a temperature",
+        ),
+        (
+            "TOP, 2, 2, -0.02\n",
+            "*CLOAD\n4, 2, -1.\n*CLOAD, OP=NEW\n5, 2, -1.\n",
+            "job.inp:51:9: *CLOAD: OP must be the same on all *CLOAD cards of a step: CalculiX only reads that of the first one",
+        ),
+        (
+            "*END STEP\n",
+            "*END STEP\n*BOUNDARY\n4, 2\n",
+            "job.inp:51:1: *BOUNDARY: it is outside the steps; it must be in a step, or before the first *STEP",
+        ),
+        (
+            "*END STEP\n",
+            "*END STEP\n*CONTACT PAIR, INTERACTION=ROUGH\nBELOW, ABOVE\n",
+            "job.inp:51:1: *CONTACT PAIR: it belongs to the model and must come before the first *STEP",
+        ),
+        (
+            "*SURFACE, NAME=BELOW",
+            "*SURFACE, NAME=POINTS, TYPE=NODE\n1, 2\n*SURFACE, NAME=BELOW",
+            "job.inp:26:4: unexpected value; a line of a surface of nodes has one node or set, without an area",
+        ),
     ];
     for (from, to, message) in cases {
         assert_eq!(refusal(&but(BLOCK, from, to)), message);
@@ -401,8 +436,20 @@ fn loads_on_sides_and_volumes_and_adjusted_gaps_are_read() {
     assert_eq!(
         weights,
         [
-            (1, Volume::Gravity([0.0, -9.81, 0.0])),
-            (0, Volume::Force([3.0, 0.0, 0.0]))
+            (
+                1,
+                Volume::Gravity {
+                    acceleration: [0.0, -9.81, 0.0],
+                    direction: [0.0, -1.0, 0.0]
+                }
+            ),
+            (
+                0,
+                Volume::Force {
+                    axis: 0,
+                    value: 3.0
+                }
+            )
         ]
     );
 }
@@ -559,6 +606,34 @@ fn instances_repeat_their_part_with_their_own_numbers_names_and_position() {
         let found = refusal(&but(ASSEMBLY, from, to));
         assert!(found.contains(why), "{found}");
     }
+}
+
+#[test]
+fn a_single_instance_keeps_its_numbers_unless_the_assembly_has_one_of_them() {
+    let begin = ASSEMBLY.find("*Instance, name=Part-1-2").unwrap();
+    let end = ASSEMBLY
+        .find("*Nset, nset=Held, instance=Part-1-1")
+        .unwrap();
+    let one = format!("{}{}", &ASSEMBLY[..begin], &ASSEMBLY[end..]);
+    let one = but(&one, "*Nset, nset=Held, instance=Part-1-2\n 1,\n", "");
+    let one = but(&one, "Part-1-2.Ends, 1, 1\n", "");
+    let labels = |text: &str| -> Vec<u64> {
+        let nodes = deck(text).nodes;
+        nodes.iter().map(|node| node.label).collect()
+    };
+    assert_eq!(labels(&one), [1, 2, 3, 4]);
+    let with = |node: &str| {
+        but(
+            &one,
+            "*Nset, nset=Held",
+            &format!("*Node\n{node}, 9., 9.\n*Nset, nset=Held"),
+        )
+    };
+    assert_eq!(labels(&with("5")), [1, 2, 3, 4, 5]);
+    assert_eq!(labels(&with("1")), [11, 12, 13, 14, 1]);
+    let deck = deck(&with("1"));
+    let force = &deck.steps[0].forces[0];
+    assert_eq!(deck.nodes[force.node].label, 12);
 }
 
 #[test]

@@ -3,7 +3,7 @@
 //! The displacement of a point is Σ N_i u_i over the nodes of its side, and its force acts on node i with the weight N_i. On each
 //! part the functions of both sides are polynomials, so constant pressure is integrated exactly on meshes that do not match.
 
-use super::super::areas::{AreaSide, density, sides};
+use super::super::areas::{AreaSide, NamedSides, density, sides};
 use super::super::nodes::Names;
 use crate::Spec;
 use crate::format::error::{Fault, at, bail};
@@ -24,6 +24,7 @@ pub(super) fn spread(
     names: &mut Names,
     bodies: &[Body],
     surfaces: &[Surface],
+    named: &NamedSides,
     slaves: &mut Vec<Contact>,
     pairs: &mut Vec<usize>,
 ) -> Result<(), Fault> {
@@ -51,7 +52,8 @@ pub(super) fn spread(
         }
         let of_pair = sides.iter().filter(|side| {
             let mut nodes = side.nodes.iter();
-            nodes.all(|&node| pairs_of[node].contains(&pair))
+            let whole = || nodes.all(|&node| pairs_of[node].contains(&pair));
+            named.has(pair, side).unwrap_or_else(whole)
         });
         for side in of_pair {
             let borders = borders(side, surfaces, &slave.surfaces, &places);

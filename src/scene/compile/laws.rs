@@ -1,6 +1,6 @@
 //! Contact laws of the pairs: tributary areas, bonds, and friction of each node.
 
-use super::super::areas::tributary;
+use super::super::areas::{NamedSides, tributary};
 use super::super::limits;
 use super::super::nodes::Names;
 use crate::Spec;
@@ -126,6 +126,7 @@ pub(super) fn apply(
     names: &Names,
     bodies: &[Body],
     pairs: &[usize],
+    named: &NamedSides,
     slaves: &mut Vec<Contact>,
 ) -> Result<(), Fault> {
     let mut pair_of = vec![None; names.nodes.len()];
@@ -133,7 +134,7 @@ pub(super) fn apply(
         pair_of[slave.node] = Some(pair);
     }
     let gives = |pair: usize| spec.slaves[pair].law.stiffness().is_some();
-    let areas = tributary(&names.nodes, bodies, &pair_of, gives);
+    let areas = tributary(&names.nodes, bodies, &pair_of, named, gives);
     for (slave, &pair) in slaves.iter_mut().zip(pairs) {
         let group = &spec.slaves[pair];
         slave.area = slave.area.or(group.area).or(areas[slave.node]);

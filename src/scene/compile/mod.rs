@@ -19,6 +19,7 @@ mod renewed;
 mod tractions;
 mod volumes;
 
+use super::areas::NamedSides;
 use super::attached;
 use super::corners;
 use super::gaps;
@@ -68,11 +69,13 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
     let (mut slaves, mut pairs) = interface::slaves(spec, &names, &surfaces, length)?;
     interface::smoothed(spec, &names, &mut surfaces)?;
     interface::check_use(spec, &names, &on_body, &surfaces.made, &slaves)?;
+    let named = NamedSides::from_spec(spec, &names)?;
     faces::spread(
         spec,
         &mut names,
         &bodies,
         &surfaces.made,
+        &named,
         &mut slaves,
         &mut pairs,
     )?;
@@ -97,7 +100,7 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
     if spec.settings.initial_gaps == InitialGaps::Ramp {
         gaps::ramp(&names.nodes, &surfaces.made, &mut slaves);
     }
-    laws::apply(spec, &names, &bodies, &pairs, &mut slaves)?;
+    laws::apply(spec, &names, &bodies, &pairs, &named, &mut slaves)?;
     let mut layout = Layout::new(on_body.clone(), &bodies);
     layout.supports(spec, &names)?;
     let Loads {

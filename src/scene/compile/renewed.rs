@@ -47,6 +47,7 @@ impl Choices {
         let group = |own: &SlaveSpec| SlaveSpec {
             nodes: Vec::new(),
             on: Vec::new(),
+            sides: Vec::new(),
             ..own.clone()
         };
         Choices {

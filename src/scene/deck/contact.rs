@@ -36,6 +36,8 @@ struct DeckContact {
     /// The slave surface.
     name: String,
     slaves: Vec<usize>,
+    /// The sides of a pair's slave surface; empty if it has nodes, is on beams, or belongs to a tie.
+    sides: Vec<(usize, usize)>,
     master: usize,
     laws: Laws,
     place: DeckLocation,
@@ -60,12 +62,30 @@ impl DeckObjects<'_> {
             } else {
                 SlavePoints::Node
             };
+            let of_nodes = matches!(self.deck.surfaces[pair.slave].of, Faces::Nodes(_));
             if pair.faces && by.is_node() {
+                let why = match law.stiffness() {
+                    None => {
+                        "SURFACE TO SURFACE is solved as node to surface: hard contact holds at each slave node, not at points \
+                         of the sides, so forces differ from CalculiX's, by up to 58 % with one element per side and less on \
+                         finer meshes; PRESSURE-OVERCLOSURE=LINEAR or TIED is solved as written"
+                    }
+                    Some(_) if of_nodes => {
+                        "SURFACE TO SURFACE is solved as node to surface, because the slave is a surface of nodes and has no \
+                         sides; give it sides with *SURFACE, TYPE=ELEMENT"
+                    }
+                    Some(_) => {
+                        "SURFACE TO SURFACE is solved as node to surface, because beams have no sides with points"
+                    }
+                };
+                self.add_note(pair.place, why);
+            }
+            let stick = interaction.stick.filter(|_| law != ContactLaw::Tied);
+            if of_nodes && (law.stiffness().is_some() || stick.is_some()) {
                 self.add_note(
                     pair.place,
-                    "SURFACE TO SURFACE is solved as node to surface: hard contact holds at each slave node, not at points \
-                     of the sides, so forces differ from CalculiX's, by up to 58 % with one element per side and less on \
-                     finer meshes; PRESSURE-OVERCLOSURE=LINEAR or TIED is solved as written",
+                    "the slave is a surface of nodes: the areas for the stiffness and the stick slope are those of the sides \
+                     between its nodes, and differ from CalculiX's; with *SURFACE, TYPE=ELEMENT they are those of its sides",
                 );
             }
             if law == ContactLaw::Tied {
@@ -83,11 +103,12 @@ impl DeckObjects<'_> {
             all.push(DeckContact {
                 name: self.deck.surfaces[pair.slave].name.clone(),
                 slaves: self.slaves_of(pair.slave),
+                sides: self.sides_of_solids(pair.slave),
                 master: pair.master,
                 laws: Laws {
                     law,
                     friction: if tied { 0.0 } else { interaction.friction },
-                    stick: interaction.stick.filter(|_| law != ContactLaw::Tied),
+                    stick,
                     by,
                 },
                 place: pair.place,
@@ -99,6 +120,7 @@ impl DeckObjects<'_> {
             all.push(DeckContact {
                 name: self.deck.surfaces[tie.slave].name.clone(),
                 slaves,
+                sides: Vec::new(),
                 master: tie.master,
                 laws: Laws {
                     law: ContactLaw::Tied,
@@ -128,15 +150,60 @@ impl DeckObjects<'_> {
 
     /// Whether both surfaces of a pair consist of sides of continua.
     fn is_of_solids(&self, pair: &Pair) -> bool {
-        let deck = self.deck;
-        let solid =
-            |&(element, _): &(usize, usize)| deck.elements[element].kind.family != Family::Beam;
-        [pair.slave, pair.master]
+        let surfaces = [pair.slave, pair.master];
+        surfaces
             .iter()
-            .all(|&surface| match &deck.surfaces[surface].of {
-                Faces::Nodes(_) => false,
-                Faces::Elements(sides) => sides.iter().all(solid),
-            })
+            .all(|&surface| !self.sides_of_solids(surface).is_empty())
+    }
+
+    /// The sides of a surface of continua; empty if it has nodes, or sides of beams.
+    fn sides_of_solids(&self, surface: usize) -> Vec<(usize, usize)> {
+        let is_solid = |&(element, _): &(usize, usize)| {
+            self.deck.elements[element].kind.family != Family::Beam
+        };
+        match &self.deck.surfaces[surface].of {
+            Faces::Elements(sides) if sides.iter().all(is_solid) => sides.clone(),
+            _ => Vec::new(),
+        }
+    }
+
+    /// The names of the sides of a group of slave nodes, whose pairs are `touched`. None if the sides follow from the nodes: all
+    /// of their nodes are in the group, and those of no other side are.
+    fn named_sides(
+        &mut self,
+        all: &[DeckContact],
+        touched: &[usize],
+        nodes: &[usize],
+        wanted: &str,
+    ) -> Vec<String> {
+        let deck = self.deck;
+        if touched.iter().any(|&k| all[k].sides.is_empty()) {
+            return Vec::new();
+        }
+        let sides: BTreeSet<(usize, usize)> = touched
+            .iter()
+            .flat_map(|&k| all[k].sides.iter().copied())
+            .collect();
+        let members: HashSet<usize> = nodes.iter().copied().collect();
+        let is_whole = |&(element, side): &(usize, usize)| {
+            let nodes = deck.side(element, side);
+            nodes.iter().all(|node| members.contains(node))
+        };
+        let solids = deck.elements.iter().enumerate();
+        let solids = solids.filter(|(_, element)| element.kind.family != Family::Beam);
+        let mut others = solids
+            .flat_map(|(k, element)| (0..element.kind.cell.corners()).map(move |side| (k, side)))
+            .filter(|side| !sides.contains(side));
+        if sides.iter().all(is_whole) && !others.any(|side| is_whole(&side)) {
+            return Vec::new();
+        }
+        let sides: Vec<(usize, usize)> = sides.into_iter().collect();
+        let place = all[touched[0]].place;
+        let names = self.lines(&sides, &format!("{wanted}-SIDES"), place);
+        names
+            .into_iter()
+            .map(|name| format!("{MESH}.{name}"))
+            .collect()
     }
 
     fn slaves_of(&self, surface: usize) -> Vec<usize> {
@@ -391,6 +458,7 @@ impl DeckObjects<'_> {
             Some(whole) => whole.name.as_str(),
             None => "SLAVES",
         };
+        let sides = self.named_sides(all, touched, nodes, wanted);
         let nodes = vec![self.group(nodes, wanted)];
         let here = at!["slaves", self.spec.slaves.len()];
         if let Some([law, friction]) = first.of_laws {
@@ -407,6 +475,7 @@ impl DeckObjects<'_> {
             law: laws.law,
             stick: laws.stick,
             by: laws.by,
+            sides,
             ..SlaveSpec::default()
         });
         Ok(())

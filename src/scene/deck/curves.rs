@@ -72,7 +72,7 @@ impl Clock {
 /// Values given for a load in a step.
 #[derive(Debug, Clone, Default)]
 pub(super) struct StepValues {
-    /// Values with their amplitudes; they are added.
+    /// Values with their amplitudes, which are the same; they are added.
     pub values: Vec<(f64, Option<usize>)>,
     /// Whether values of earlier steps are removed.
     pub new: bool,
@@ -166,14 +166,8 @@ impl StepLoad<'_> {
             return swung;
         }
         let goal: f64 = plain.iter().sum();
-        // A load that also has an amplitude starts from zero.
-        let start = if plain.len() == self.loads.len() {
-            self.before
-        } else {
-            0.0
-        };
         let part = if self.jump { 1.0 } else { time / self.period };
-        swung + start + (goal - start) * part
+        self.before + (goal - self.before) * part
     }
 
     /// Times within the step at which the value has a corner; `from` is included if it is not 0.

@@ -22,8 +22,34 @@ struct Course {
 type StepValue<T> = (T, f64, Option<usize>, DeckLocation);
 /// An element and one of its sides.
 type Side = (usize, usize);
-/// Key of volume forces that form one load: body, axis, whether it is weight, and the curve.
-type VolumeLoadKey = (usize, usize, bool, Vec<u64>);
+/// Key of volume forces that form one load: body, axis, kind and the curve.
+type VolumeLoadKey = (usize, usize, VolumeKind, Vec<u64>);
+
+/// The volume forces of an element that replace each other from step to step: forces along the same axis, and accelerations in
+/// the same direction, which is rounded to tell it from another one. Others are added.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum VolumeKind {
+    Force,
+    Gravity([i64; 2]),
+}
+
+impl VolumeKind {
+    /// The axes on which a volume force acts, with its components.
+    fn parts(load: Volume) -> Vec<(usize, VolumeKind, f64)> {
+        match load {
+            Volume::Force { axis, value } => vec![(axis, VolumeKind::Force, value)],
+            Volume::Gravity {
+                acceleration,
+                direction,
+            } => {
+                let kind =
+                    VolumeKind::Gravity([0, 1].map(|axis| (direction[axis] * 1e9).round() as i64));
+                let part = |axis: usize| (axis, kind, acceleration[axis]);
+                vec![part(0), part(1)]
+            }
+        }
+    }
+}
 
 /// A value and its amplitude.
 type TimedValue = (f64, Vec<(f64, f64)>);
@@ -48,7 +74,7 @@ impl DeckObjects<'_> {
     pub(super) fn loads(&mut self, clock: &Clock) -> Result<(), Fault> {
         self.motions(clock)?;
         self.forces(clock)?;
-        self.pressures(clock);
+        self.pressures(clock)?;
         self.weights(clock)?;
         self.expansions(clock)?;
         self.monitors();
@@ -61,13 +87,14 @@ impl DeckObjects<'_> {
     }
 
     /// The course of the value on each target: `values` lists target, value, amplitude and location. Unless `adds` is set, a
-    /// later value of a step replaces an earlier one.
+    /// later value of a step replaces an earlier one. Values that are added must have the same amplitude, which CalculiX requires,
+    /// too, except of GRAV.
     fn courses<T: Ord>(
         &self,
         values: impl Fn(&Step) -> Vec<StepValue<T>>,
         new: impl Fn(&Step) -> bool,
         adds: bool,
-    ) -> BTreeMap<T, Course> {
+    ) -> Result<BTreeMap<T, Course>, Fault> {
         let steps = &self.deck.steps;
         let empty = || -> Vec<StepValues> {
             steps
@@ -90,10 +117,16 @@ impl DeckObjects<'_> {
                 if !adds {
                     here.clear();
                 }
+                if here.first().is_some_and(|(_, other)| *other != amplitude) {
+                    bail!(
+                        place,
+                        "the load is given again in this step, with another amplitude; give it one amplitude that contains both"
+                    );
+                }
                 here.push((value, amplitude));
             }
         }
-        courses
+        Ok(courses)
     }
 
     fn is_beam_node(&self) -> Vec<bool> {
@@ -104,7 +137,7 @@ impl DeckObjects<'_> {
 
     fn motions(&mut self, clock: &Clock) -> Result<(), Fault> {
         let mut courses =
-            self.courses(|step| listed(&step.motions), |step| step.new_motions, false);
+            self.courses(|step| listed(&step.motions), |step| step.new_motions, false)?;
         let mut from_model: BTreeMap<(usize, Direction), DeckLocation> = BTreeMap::new();
         for support in &self.deck.supports {
             from_model.entry(support.target()).or_insert(support.place);
@@ -113,6 +146,17 @@ impl DeckObjects<'_> {
         let moves = |&(node, direction): &(usize, Direction)| {
             self.used[node] && (direction != Direction::Rotation || on_beam[node])
         };
+        for (&(node, direction), course) in &courses {
+            let mut values = course.given.iter().flat_map(|given| &given.values);
+            let is_turned = direction == Direction::Rotation && values.any(|(v, _)| *v != 0.0);
+            if is_turned && self.used[node] && !on_beam[node] {
+                bail!(
+                    course.place,
+                    "node {} is not on a beam, so it has no rotation to prescribe",
+                    self.deck.nodes[node].label
+                );
+            }
+        }
         courses.retain(|target, _| moves(target));
         from_model.retain(|target, _| moves(target));
         for target in from_model.keys().chain(courses.keys()) {
@@ -252,7 +296,7 @@ impl DeckObjects<'_> {
     }
 
     fn forces(&mut self, clock: &Clock) -> Result<(), Fault> {
-        let courses = self.courses(|step| listed(&step.forces), |step| step.new_forces, true);
+        let courses = self.courses(|step| listed(&step.forces), |step| step.new_forces, true)?;
         let on_beam = self.is_beam_node();
         for ((node, direction), course) in courses {
             let label = self.deck.nodes[node].label;
@@ -309,14 +353,14 @@ impl DeckObjects<'_> {
     }
 
     /// Pressures: sides with the same pressure form one load.
-    fn pressures(&mut self, clock: &Clock) {
+    fn pressures(&mut self, clock: &Clock) -> Result<(), Fault> {
         let listed = |step: &Step| {
             step.pressures
                 .iter()
                 .map(|p| ((p.element, p.side), p.value, p.amplitude, p.place))
                 .collect()
         };
-        let courses = self.courses(listed, |step| step.new_pressures, true);
+        let courses = self.courses(listed, |step| step.new_pressures, true)?;
         let mut alike: Vec<(Vec<Side>, TimedValue, DeckLocation)> = Vec::new();
         let mut known: HashMap<Vec<u64>, usize> = HashMap::new();
         for (side, course) in courses {
@@ -349,6 +393,7 @@ impl DeckObjects<'_> {
                 );
             }
         }
+        Ok(())
     }
 
     /// Whether no node of a side can move freely.
@@ -365,25 +410,17 @@ impl DeckObjects<'_> {
         let deck = self.deck;
         let listed = |step: &Step| {
             let parts = step.weights.iter().flat_map(|weight| {
-                let (components, is_weight) = match weight.load {
-                    Volume::Gravity(components) => (components, true),
-                    Volume::Force(components) => (components, false),
-                };
-                let target = |axis: usize| (weight.element, axis, is_weight);
-                [0, 1].map(|axis| {
-                    (
-                        target(axis),
-                        components[axis],
-                        weight.amplitude,
-                        weight.place,
-                    )
+                let parts = VolumeKind::parts(weight.load).into_iter();
+                parts.map(|(axis, kind, value)| {
+                    let target = (weight.element, axis, kind);
+                    (target, value, weight.amplitude, weight.place)
                 })
             });
-            parts.filter(|(_, value, ..)| *value != 0.0).collect()
+            parts.collect()
         };
-        let courses = self.courses(listed, |step| step.new_pressures, true);
+        let courses = self.courses(listed, |step| step.new_weights, true)?;
         let mut alike: BTreeMap<VolumeLoadKey, (usize, TimedValue, DeckLocation)> = BTreeMap::new();
-        for ((element, axis, is_weight), course) in courses {
+        for ((element, axis, kind), course) in courses {
             let points = curve(clock, &deck.amplitudes, &course.given);
             let (Some(acts), Some(body)) = (scaled(&points), self.body_of[element]) else {
                 let label = deck.elements[element].label;
@@ -398,11 +435,11 @@ impl DeckObjects<'_> {
                 }
             };
             alike
-                .entry((body, axis, is_weight, bits(&points)))
+                .entry((body, axis, kind, bits(&points)))
                 .or_insert((0, acts, course.place))
                 .0 += 1;
         }
-        for ((body, axis, is_weight, _), (count, (value, scale), place)) in alike {
+        for ((body, axis, kind, _), (count, (value, scale), place)) in alike {
             let members = self.body_of.iter().filter(|of| **of == Some(body)).count();
             let on = self.spec.bodies[body].id().to_owned();
             if count < members {
@@ -411,10 +448,9 @@ impl DeckObjects<'_> {
                     "the load acts on {count} of the {members} connected elements of {on}; it must act on all of them"
                 );
             }
-            let density = if is_weight {
-                self.density(body, place)?
-            } else {
-                1.0
+            let density = match kind {
+                VolumeKind::Gravity(_) => self.density(body, place)?,
+                VolumeKind::Force => 1.0,
             };
             let part = |k: usize| if k == axis { value * density } else { 0.0 };
             self.add_load(
@@ -439,7 +475,7 @@ impl DeckObjects<'_> {
                 .map(|v| (v.node, v.value, v.amplitude, v.place))
                 .collect()
         };
-        let courses = self.courses(warmed, |step| step.new_temperatures, false);
+        let courses = self.courses(warmed, |step| step.new_temperatures, false)?;
         if courses.is_empty() {
             return Ok(());
         }

@@ -204,6 +204,16 @@ fn errors_in_the_scene_have_the_line_of_the_deck() {
             "ABOVE, BELOW\n*CONTACT PAIR, INTERACTION=ROUGH, TYPE=NODE TO SURFACE, ADJUST=0.\nBELOW, ABOVE",
             "job.inp:41:1: ADJUST must be the same",
         ),
+        (
+            "TOP, 2, 2, -0.02\n",
+            "TOP, 2, 2, -0.02\n4, 6, 6, 0.1\n",
+            "job.inp:50:1: node 4 is not on a beam, so it has no rotation to prescribe",
+        ),
+        (
+            "*END STEP",
+            "*CLOAD\n1, 2, -1.\n*CLOAD, AMPLITUDE=FORTH\n1, 2, -1.\n*END STEP",
+            "job.inp:53:1: the load is given again in this step, with another amplitude",
+        ),
     ];
     for (from, to, begin) in cases {
         let found = refusal(&but(BLOCK, from, to));
@@ -219,7 +229,7 @@ fn op_new_may_repeat_all_values_but_not_free_a_node() {
         but(
             BLOCK,
             "*BOUNDARY, AMPLITUDE=FORTH\n",
-            &format!("*BOUNDARY{op}\n{lines}*BOUNDARY, AMPLITUDE=FORTH\n"),
+            &format!("*BOUNDARY{op}\n{lines}*BOUNDARY{op}, AMPLITUDE=FORTH\n"),
         )
     };
     let spec = |text: &str| {
@@ -266,6 +276,59 @@ fn op_new_removes_the_pressures_of_earlier_steps() {
     };
     assert_eq!(second(""), [(7.0, Some(1.0)), (5.0, Some(1.0))]);
     assert_eq!(second(", OP=NEW"), [(7.0, Some(0.0)), (5.0, Some(1.0))]);
+}
+
+#[test]
+fn slave_surfaces_of_nodes_are_noted_with_their_reason() {
+    let of_nodes = but(
+        BLOCK,
+        "*SURFACE, NAME=BELOW\nBLOCK, S1\n",
+        "*SURFACE, NAME=BELOW, TYPE=NODE\n1\n2\n3\n",
+    );
+    let linear = but(&of_nodes, "=HARD", "=LINEAR\n1000., 1e-9");
+    let (areas, sides) = (
+        "job.inp:42: the slave is a surface of nodes: the areas for the stiffness",
+        "job.inp:42: SURFACE TO SURFACE is solved as node to surface, because the slave is a surface of nodes",
+    );
+    let has = |text: &str, begin: &str| {
+        let remarks = scene(text).remarks;
+        remarks.iter().any(|remark| remark.starts_with(begin))
+    };
+    let [hard_areas, hard_sides] = [areas, sides].map(|note| note.replace(":42:", ":41:"));
+    assert!(has(&linear, areas) && !has(&linear, sides));
+    assert!(!has(&of_nodes, &hard_areas) && !has(&of_nodes, &hard_sides));
+    assert!(has(&but(&of_nodes, "0.4\n", "0.4, 1e5\n"), &hard_areas));
+    let faces = but(&linear, "TYPE=NODE TO", "TYPE=SURFACE TO");
+    assert!(has(&faces, areas) && has(&faces, sides));
+}
+
+/// Only where the nodes do not tell the sides does a pair name them; a name must be that of a chain.
+#[test]
+fn a_pair_names_its_sides_where_the_nodes_do_not_tell_them() {
+    assert!(
+        scene(BLOCK)
+            .spec
+            .slaves
+            .iter()
+            .all(|own| own.sides.is_empty())
+    );
+    // The ends of the block have all their nodes in this surface, too.
+    let both = but(BLOCK, "BLOCK, S1\n", "BLOCK, S1\nBLOCK, S3\n");
+    let mut spec = scene(&both).spec;
+    assert_eq!(spec.slaves[0].sides, ["n.BELOW-SIDES", "n.BELOW-SIDES-2"]);
+    spec.slaves[0].sides[0] = "n.BESIDE".to_owned();
+    let error = Scene::from_spec("scene.ron", spec).map(drop).unwrap_err();
+    let told = error.to_string();
+    assert!(
+        told.contains("slaves[0].sides[0]: ") && told.contains("n.BESIDE"),
+        "{told}"
+    );
+}
+
+#[test]
+fn nodes_of_beams_are_not_reported_as_idle() {
+    let beam = include_str!("../../../tests/decks/beam-on-a-post.inp");
+    assert_eq!(scene(beam).names().notes(1), [""; 0]);
 }
 
 #[test]

@@ -530,6 +530,10 @@ described! {
         /// The points of the slave surface at which the law holds. Default: node.
         #[serde(default, skip_serializing_if = "SlavePoints::is_node")]
         pub by: SlavePoints,
+        /// Names of the sides that make up the slave surface: chains, or sides of a given mesh. The areas of the nodes and the
+        /// points of faces are those of these sides. Default: none, the sides of bodies that have all their nodes in this list.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        pub sides: Vec<String>,
         /// Undeformed tributary area of each of these nodes. Default: none, it is computed from the sides of the body.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub area: Option<f64>,

@@ -2,6 +2,7 @@
 
 use super::given::nodes_of;
 use super::{EntryKind, NameEntry, Names};
+use std::collections::BTreeSet;
 use stickslip_core::plane::distance;
 
 /// A line of sides.
@@ -26,8 +27,16 @@ impl Names {
             .entries
             .iter()
             .filter(|entry| entry.kind == EntryKind::Given);
+        let of_chains = self
+            .entries
+            .iter()
+            .filter(|entry| matches!(entry.kind, EntryKind::Chain(_)))
+            .flat_map(|entry| entry.nodes.iter().copied());
+        let of_chains: BTreeSet<usize> = of_chains.collect();
         let note = |mesh: &NameEntry| {
-            let idle = mesh.nodes.len() - nodes_of(&mesh.elements).len();
+            let mut busy: BTreeSet<usize> = nodes_of(&mesh.elements).into_iter().collect();
+            busy.extend(mesh.nodes.iter().filter(|node| of_chains.contains(node)));
+            let idle = mesh.nodes.len() - busy.len();
             let idle = (idle > 0).then(|| {
                 format!(
                     "mesh {:?}: {idle} of its nodes belong to no element",

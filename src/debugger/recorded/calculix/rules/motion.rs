@@ -46,11 +46,16 @@ impl GroupMotion {
             supports: SMatrix::zeros(),
             load: Motion::zeros(),
         };
+        let on_beam = shape.is_beam_node();
         for value in supports(shape, step) {
-            if shape.group(value.node) == Some(group)
-                && let Some(axis) = value.direction.axis()
-            {
-                this.hold(shape.at(value.node), Vector::ith(axis, 1.0));
+            if shape.group(value.node) != Some(group) {
+                continue;
+            }
+            match value.direction.axis() {
+                Some(axis) => this.hold(shape.at(value.node), Vector::ith(axis, 1.0)),
+                // Only beams have a rotation, about z.
+                None if on_beam[value.node] => this.supports[(5, 5)] += 1.0,
+                None => {}
             }
         }
         let forces = this.forces.values();
@@ -188,8 +193,8 @@ fn forces(shape: &DeckShape, step: usize) -> Vec<Force> {
             .sum::<f64>()
             / if deck.is_solid() { 3.0 } else { 2.0 };
         let per_volume = match weight.load {
-            Volume::Force(force) => Vector::from(force),
-            Volume::Gravity(acceleration) => {
+            Volume::Force { axis, value } => Vector::ith(axis, value),
+            Volume::Gravity { acceleration, .. } => {
                 let material = shape.material(weight.element);
                 let density = material.and_then(|k| deck.materials[k].density);
                 Vector::from(acceleration) * density.unwrap_or(0.0)
@@ -277,7 +282,8 @@ fn add_forces(
     };
     total.retain(|of, _| match of[0] {
         0 => !step.new_forces,
-        _ => !step.new_pressures,
+        1 => !step.new_pressures,
+        _ => !step.new_weights,
     });
     let mut here: BTreeMap<[usize; 3], Force> = BTreeMap::new();
     for force in forces(shape, number) {

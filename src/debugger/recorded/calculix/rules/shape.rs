@@ -3,7 +3,7 @@
 pub use super::sorted_points::Vector;
 use super::sorted_points::{SortedPoints, extent};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
-use stickslip_core::groups::Connected;
+use stickslip_core::groups::{Connected, marked};
 use stickslip_core::model::RunShape;
 use stickslip_exchange::calculix::cel::Slave;
 use stickslip_exchange::inp::Deck;
@@ -358,6 +358,14 @@ impl<'d> DeckShape<'d> {
     /// Whether a pair holds in tension and shear, too.
     pub fn is_tied(&self, pair: &PairShape) -> bool {
         matches!(self.law(pair).normal, Normal::Tied { .. })
+    }
+
+    /// Whether each node is on a beam.
+    pub fn is_beam_node(&self) -> Vec<bool> {
+        let elements = self.deck.elements.iter();
+        let beams = elements.filter(|element| element.kind.family == Family::Beam);
+        let nodes = beams.flat_map(|element| &element.nodes);
+        marked(self.deck.nodes.len(), nodes)
     }
 
     /// Directions in which a group can move: translations, then rotations. None for beams in 3-D, whose rotations the rules do
