@@ -33,7 +33,7 @@ impl JsonArgs {
     pub fn open(&self, overwrite: bool) -> Result<Option<Sink>, Error> {
         if let Some(file) = self.to().filter(|file| is_input(file)) {
             return Err(usage!(
-                "--json {file}: a word after --json names the file to write, and this name is that of a scene, deck or snapshot; write --json behind it"
+                "--json {file}: {file} is a scene, deck or snapshot, but the word after --json is the file to write; put --json at the end of the line"
             ));
         }
         self.to().map(|to| Sink::open(to, overwrite)).transpose()

@@ -51,6 +51,24 @@ impl NamedSides {
         Ok(NamedSides(all))
     }
 
+    /// Refuses names of sides that no body has.
+    pub fn check(&self, bodies: &[Body]) -> Result<(), Fault> {
+        let mut known = HashSet::new();
+        if self.0.iter().any(Option::is_some) {
+            let sides = bodies.iter().flat_map(sides);
+            known.extend(sides.map(|side| ascending(side.nodes)));
+        }
+        for (k, own) in self.0.iter().enumerate() {
+            if own.iter().flatten().any(|side| !known.contains(side)) {
+                return Err(Fault::new(
+                    at!["slaves", k, "sides"],
+                    "these are not sides of the elements of a solid or beam, with all their nodes",
+                ));
+            }
+        }
+        Ok(())
+    }
+
     /// Whether a side belongs to a pair; `None` if the pair names no sides.
     pub fn has(&self, pair: usize, side: &AreaSide<'_>) -> Option<bool> {
         let own = self.0.get(pair)?.as_ref()?;

@@ -412,7 +412,7 @@ fn a_replay_writes_its_result_over_no_snapshot_even_by_force() {
     for (line, says) in [
         (
             ["replay", "--force", "--json", file, SNAPSHOT],
-            "write --json behind it",
+            "put --json at the end of the line",
         ),
         (
             ["replay", "--force", file, "--junit", file],

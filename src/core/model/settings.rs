@@ -225,7 +225,7 @@ documented! {
 pub enum SearchBudget {
     /// By a rule.
     Mode(SearchMode),
-    /// At most this many factorizations.
+    /// At most this many factorizations; 0 is `auto`, as in the setting `search_limit` of earlier revisions.
     Limit(u32),
 }
 

@@ -79,7 +79,8 @@ impl Stepper {
         let still = after.correction < 1.0;
         // Forces between linear bodies that stick balance at once, whatever the directions along which they were solved for.
         let reported = REPORTED.max(settings.tolerance) * after.scale;
-        let turned = !at_limit
+        let turned = constant
+            && !at_limit
             && after.correction > STILL
             && differ(&self.event.nodes, &self.now.state.nodes, reported);
         let unfinished = turned || self.now.state.is_carried(&after);

@@ -164,11 +164,9 @@ impl SearchRecord {
     pub(super) fn can_afford(&self, by: Fallback, budget: SearchBudget) -> bool {
         let limit = match budget {
             SearchBudget::Mode(SearchMode::Off) => 0,
-            SearchBudget::Mode(SearchMode::Auto) if by == Fallback::Longer => {
-                self.run.saturating_mul(WORTH + 1)
-            }
-            SearchBudget::Mode(SearchMode::Auto) => self.run.saturating_mul(WORTH),
-            SearchBudget::Limit(limit) => limit,
+            SearchBudget::Limit(limit) if limit > 0 => limit,
+            _ if by == Fallback::Longer => self.run.saturating_mul(WORTH + 1),
+            _ => self.run.saturating_mul(WORTH),
         };
         match by {
             Fallback::Deeper => self.spent < limit / 2,

@@ -158,9 +158,13 @@ fn near_ends(model: &Model, state: &State) -> Vec<NearEnd> {
 }
 
 /// The nodes that have slipped off the end of a surface at the end of an accepted increment: free and past the end by a small part
-/// of an element, and inside the continued surface. At the start of the increment they touched, or they are flush with that end
-/// before deformation.
-pub fn slipped_off(model: &Model, [before, last]: [&IncrementStart; 2]) -> Vec<SlippedNode> {
+/// of an element, and inside the continued surface. Before that they touched it (`touched`, by slave and surface), or they are flush
+/// with that end before deformation.
+pub fn slipped_off(
+    model: &Model,
+    touched: &dyn Fn(usize, usize) -> bool,
+    last: &IncrementStart,
+) -> Vec<SlippedNode> {
     if model.space.is_some() {
         return Vec::new();
     }
@@ -191,7 +195,7 @@ pub fn slipped_off(model: &Model, [before, last]: [&IncrementStart; 2]) -> Vec<S
                 let [past_at_start, depth_at_start] = was.beyond(&start, contact.node);
                 let is_flush =
                     past_at_start.abs() < FLUSH * was.length && depth_at_start.abs() < near;
-                let touched = before.nodes[slave].mode != Mode::Free;
+                let touched = touched(slave, surface);
                 let is_off = (0.0..near).contains(&past) && (remains..near).contains(&depth);
                 (is_off && (touched || is_flush)).then_some(SlippedNode {
                     slave,

@@ -11,7 +11,7 @@ use std::sync::Arc;
 use stickslip_core::contact::record::ContactRecord;
 use stickslip_core::groups::distinct;
 use stickslip_core::model::{BodyKind, diagonal};
-use stickslip_core::{Body, Event, IncrementStart, Model, Outcome};
+use stickslip_core::{Body, Event, IncrementStart, Mode, Model, Outcome};
 use stickslip_scene::{first_of, overlaps, shortest, sig4};
 
 /// Contact forces below this part of the force scale are round-off.
@@ -74,7 +74,15 @@ impl FreeBodies {
     ) -> Vec<PlaceFinding> {
         let motions = self.motions(model, event, states.map(|state| &state.u[..]));
         let slipped = match &event.outcome {
-            Outcome::Increment { .. } => slipped_off(model, states),
+            Outcome::Increment { .. } => {
+                let [before, last] = states;
+                let touched = |slave: usize, surface: usize| {
+                    let node = &before.nodes[slave];
+                    let spot = node.spot.filter(|_| node.mode != Mode::Free);
+                    spot.is_some_and(|spot| spot.surface == surface)
+                };
+                slipped_off(model, &touched, last)
+            }
             _ => Vec::new(),
         };
         let motions = motions.into_iter().map(PlaceFinding::Unforced);
@@ -187,9 +195,16 @@ impl UnforcedLog {
         moved.collect()
     }
 
-    /// One sentence per surface off which nodes slipped.
-    fn slipped_words(&self, model: &Model) -> Vec<String> {
-        let slipped = self.slipped.iter().map(|(&surface, found)| {
+    /// One sentence per surface off which nodes slipped that are still near its end in the last accepted state: others left it.
+    fn slipped_words(&self, model: &Model, last: &IncrementStart) -> Vec<String> {
+        let known = |slave: usize, surface: usize| {
+            let found = self.slipped.get(&surface);
+            found.is_some_and(|found| found.slaves.contains(&slave))
+        };
+        let still = slipped_off(model, &known, last);
+        let remain = |surface: usize| still.iter().any(|node| node.surface == surface);
+        let slipped = self.slipped.iter().filter(|(surface, _)| remain(**surface));
+        let slipped = slipped.map(|(&surface, found)| {
             let slaves = found.slaves.iter().map(|&slave| names::slave(model, slave));
             let (surface, (increment, load)) = (&model.surfaces[surface].name, found.since);
             let [are, touched] = match found.slaves.len() {
@@ -211,7 +226,7 @@ impl UnforcedLog {
     /// surface, and bodies that overlap in the last accepted state.
     pub fn warnings(&self, model: &Model, last: &IncrementStart) -> Vec<String> {
         let mut all = self.words(model);
-        all.extend(self.slipped_words(model));
+        all.extend(self.slipped_words(model, last));
         all.extend(overlaps::at_end(model, last));
         all
     }

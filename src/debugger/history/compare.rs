@@ -150,6 +150,13 @@ fn common_load(tree: &Tree, a: usize, b: usize) -> Option<[usize; 2]> {
         })
 }
 
+/// The records of a minor iteration that ends no increment: forces and gaps along directions that are frozen in it.
+fn solved(frame: &Frame) -> &[ContactRecord] {
+    let event = frame.event.as_deref();
+    let within = event.filter(|event| !event.outcome.is_accepted());
+    within.map_or(&[], |event| &event.nodes)
+}
+
 fn same(tree: &Tree, a: (usize, usize), b: (usize, usize)) -> Option<Sameness> {
     let (x, _) = tree.point(a.0, a.1)?;
     let (y, _) = tree.point(b.0, b.1)?;
@@ -162,7 +169,6 @@ fn same(tree: &Tree, a: (usize, usize), b: (usize, usize)) -> Option<Sameness> {
                 .zip(y)
                 .any(|(x, y)| (x - y).abs() > SAME_STATE * size)
     };
-    let solved = |frame: &Frame| frame.event.clone().map_or(Vec::new(), |e| e.nodes.clone());
     let (solved_x, solved_y) = (solved(x), solved(y));
     let forces = |frame: &Frame, solved: &[ContactRecord]| -> Vec<f64> {
         let held = frame.state.nodes.iter().flat_map(ContactState::force);
@@ -171,7 +177,7 @@ fn same(tree: &Tree, a: (usize, usize), b: (usize, usize)) -> Option<Sameness> {
     };
     let gaps =
         |solved: &[ContactRecord]| -> Vec<f64> { solved.iter().map(|node| node.gap).collect() };
-    let (f, g) = (forces(x, &solved_x), forces(y, &solved_y));
+    let (f, g) = (forces(x, solved_x), forces(y, solved_y));
     let scale = |frame: &Frame| frame.event.as_ref().map_or(0.0, |event| event.before.scale);
     let largest = f
         .iter()
@@ -179,7 +185,7 @@ fn same(tree: &Tree, a: (usize, usize), b: (usize, usize)) -> Option<Sameness> {
         .fold(scale(x).max(scale(y)), |m, f| m.max(f.abs()));
     let length = tree.model().length;
     let moved =
-        apart(&x.state.u, &y.state.u, length) || apart(&gaps(&solved_x), &gaps(&solved_y), length);
+        apart(&x.state.u, &y.state.u, length) || apart(&gaps(solved_x), &gaps(solved_y), length);
     Some(if moved || apart(&f, &g, largest) {
         Sameness::Different
     } else {

@@ -1,10 +1,10 @@
 //! Compares two snapshots, node by node.
 //!
 //! Compared exactly: position, numbers of minor iterations and nodes, status, modes, rules, forced modes,
-//! interventions, the limit of the residual, and the scalars of the scenes. Numbers may differ by 1e-9 of their scale, because another processor may sum
-//! in another order. The scale is the force scale of the residual norms for forces, the diagonal of the scene's
-//! bodies for lengths, and 1 for rotations and for residuals, which are relative already; or the number itself,
-//! if that is larger. NaN equals NaN. Names of scenes are not compared.
+//! interventions, the limit of the residual, and the scalars of the scenes. Numbers may differ by 1e-9 of their
+//! scale, because another processor may sum in another order. The scale is the force scale of the residual norms
+//! for forces, the diagonal of the scene's bodies for lengths, and 1 for rotations and for residuals, which are
+//! relative already; or the number itself, if that is larger. NaN equals NaN. Names of scenes are not compared.
 
 use super::snapshot::{Displacement, Recorded, SlaveRecord, Snapshot};
 use crate::explain::tested::Dimension::{self, Force, Length, Ratio};

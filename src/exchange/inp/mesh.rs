@@ -317,10 +317,15 @@ impl Reader {
                 let mut members = Vec::new();
                 for line in &card.lines {
                     let words = cells(*line);
-                    if let Some(more) = words.get(1).filter(|_| !self.is_outline) {
+                    // Abaqus writes an area behind the node, always with a decimal point; contact here needs none.
+                    let is_area = |cell: &CardCell<'_>| {
+                        cell.text.parse::<f64>().is_ok() && cell.text.parse::<u64>().is_err()
+                    };
+                    let unread = words.iter().skip(1).find(|cell| !is_area(cell));
+                    if let Some(more) = unread.or(words.get(2)).filter(|_| !self.is_outline) {
                         bail!(
                             more,
-                            "unexpected value; a line of a surface of nodes has one node or set, without an area"
+                            "unexpected value; a line of a surface of nodes has one node or set, and behind it only an area such as 1."
                         );
                     }
                     if let Some(cell) = words.first() {

@@ -320,12 +320,15 @@ fn errors_have_a_location_and_the_expected_input() {
         (
             "*SURFACE, NAME=BELOW",
             "*SURFACE, NAME=POINTS, TYPE=NODE\n1, 2\n*SURFACE, NAME=BELOW",
-            "job.inp:26:4: unexpected value; a line of a surface of nodes has one node or set, without an area",
+            "job.inp:26:4: unexpected value; a line of a surface of nodes has one node or set, and behind it only an area such as 1.",
         ),
     ];
     for (from, to, message) in cases {
         assert_eq!(refusal(&but(BLOCK, from, to)), message);
     }
+    // Abaqus writes an area behind each node.
+    let with_area = "*SURFACE, NAME=POINTS, TYPE=NODE\n1, 1.\n*SURFACE, NAME=BELOW";
+    deck(&but(BLOCK, "*SURFACE, NAME=BELOW", with_area));
     assert!(
         refusal(BLOCK.rsplit_once("*END STEP").map_or("", |(most, _)| most))
             .contains("the step has no end")

@@ -190,7 +190,10 @@ impl DeckObjects<'_> {
             nodes.iter().all(|node| members.contains(node))
         };
         let solids = deck.elements.iter().enumerate();
-        let solids = solids.filter(|(_, element)| element.kind.family != Family::Beam);
+        let solids = solids.filter(|(_, element)| {
+            let own = element.nodes.iter().filter(|node| members.contains(node));
+            element.kind.family != Family::Beam && own.count() > 1
+        });
         let mut others = solids
             .flat_map(|(k, element)| (0..element.kind.cell.corners()).map(move |side| (k, side)))
             .filter(|side| !sides.contains(side));

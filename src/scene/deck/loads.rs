@@ -87,8 +87,8 @@ impl DeckObjects<'_> {
     }
 
     /// The course of the value on each target: `values` lists target, value, amplitude and location. Unless `adds` is set, a
-    /// later value of a step replaces an earlier one. Values that are added must have the same amplitude, which CalculiX requires,
-    /// too, except of GRAV.
+    /// later value of a step replaces an earlier one. Values that are added must have the same amplitude; CalculiX requires
+    /// this too, except for GRAV.
     fn courses<T: Ord>(
         &self,
         values: impl Fn(&Step) -> Vec<StepValue<T>>,
