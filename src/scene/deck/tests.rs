@@ -303,27 +303,27 @@ fn slave_surfaces_of_nodes_are_noted_with_their_reason() {
 }
 
 #[test]
-fn a_chain_across_an_element_is_no_side_that_a_pair_may_name() {
+fn a_rigid_line_is_no_side_that_a_pair_may_name() {
     let text = r#"(
         title: "a block over a line",
         nodes: [
             Given(id: "n", nodes: [(1, 0.0, 0.0), (2, 1.0, 0.0), (3, 1.0, 1.0), (4, 0.0, 1.0)],
                 elements: [(part: "p", kind: quad4, nodes: [[1, 2, 3, 4]])],
-                sides: [(name: "bottom", sides: [[1, 2]]), (name: "cross", sides: [[1, 3]])]),
-            Line(id: "f", from: (2.0, -0.5), to: (-1.0, -0.5), elements: 1),
+                sides: [(name: "bottom", sides: [[1, 2]])]),
+            Line(id: "f", from: (2.0, -0.5), to: (-1.0, -0.5), elements: 1, per_element: 2),
         ],
         materials: [Elastic(id: "m", E: 1.0, nu: 0.3)],
         bodies: [Solid(id: "b", mesh: "n", material: "m")],
         surfaces: [(id: "f", along: "f")],
-        slaves: [(nodes: ["n.bottom"], on: ["f"], sides: ["n.SIDE"])],
+        slaves: [(nodes: ["n.bottom"], on: ["f"], sides: ["SIDE"])],
         friction: (angle: 10.0),
         supports: [(node: "n.3", fix: [x, y]), (node: "n.4", fix: [x, y])],
-        loads: [Force(node: "n.1", component: y, value: -1.0)],
+        loads: [Force(node: "n.1", y: -1.0)],
         history: (path: [0.0, 1.0], increment: 1.0),
     )"#;
     let read = |side: &str| Scene::from_text("scene.ron", &text.replace("SIDE", side), &[]);
-    assert!(read("bottom").is_ok(), "{:?}", read("bottom").err());
-    let told = read("cross").map(drop).unwrap_err().to_string();
+    assert!(read("n.bottom").is_ok(), "{:?}", read("n.bottom").err());
+    let told = read("f").map(drop).unwrap_err().to_string();
     assert!(told.contains("not sides of the elements"), "{told}");
 }
 
