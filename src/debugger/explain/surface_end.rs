@@ -42,6 +42,8 @@ pub struct SlippedNode {
     pub surface: usize,
     /// Distance past the end, along the surface (length).
     pub past: f64,
+    /// Whether it is flush with that end before deformation.
+    pub is_flush: bool,
 }
 
 /// A node near the end of a surface.
@@ -201,6 +203,7 @@ pub fn slipped_off(
                     slave,
                     surface,
                     past,
+                    is_flush,
                 })
             }));
         }

@@ -133,6 +133,8 @@ struct SlippedNodes {
     slaves: BTreeSet<usize>,
     since: (u32, f64),
     farthest: f64,
+    /// Whether one of them is flush with the end before deformation: the bodies are meant to end together.
+    is_flush: bool,
 }
 
 /// Where a body moved without a force: first and last increment, and load; and the farthest motion in one of them (length).
@@ -154,7 +156,9 @@ impl UnforcedLog {
                         slaves: BTreeSet::new(),
                         since: (increment, load),
                         farthest: 0.0,
+                        is_flush: false,
                     });
+                    on.is_flush |= node.is_flush;
                     on.slaves.insert(node.slave);
                     on.farthest = on.farthest.max(node.past);
                     continue;
@@ -195,7 +199,8 @@ impl UnforcedLog {
         moved.collect()
     }
 
-    /// One sentence per surface off which nodes slipped that are still near its end in the last accepted state: others left it.
+    /// One sentence per surface off which nodes slipped that are flush with its end, or are still near it in the last accepted
+    /// state: others left it.
     fn slipped_words(&self, model: &Model, last: &IncrementStart) -> Vec<String> {
         let known = |slave: usize, surface: usize| {
             let found = self.slipped.get(&surface);
@@ -203,7 +208,9 @@ impl UnforcedLog {
         };
         let still = slipped_off(model, &known, last);
         let remain = |surface: usize| still.iter().any(|node| node.surface == surface);
-        let slipped = self.slipped.iter().filter(|(surface, _)| remain(**surface));
+        let meant =
+            |(surface, found): &(&usize, &SlippedNodes)| found.is_flush || remain(**surface);
+        let slipped = self.slipped.iter().filter(meant);
         let slipped = slipped.map(|(&surface, found)| {
             let slaves = found.slaves.iter().map(|&slave| names::slave(model, slave));
             let (surface, (increment, load)) = (&model.surfaces[surface].name, found.since);
