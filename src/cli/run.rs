@@ -16,7 +16,7 @@ use stickslip_debugger::explain::names;
 use stickslip_debugger::explain::page;
 use stickslip_debugger::explain::report;
 use stickslip_debugger::explain::touch::TouchWatch;
-use stickslip_debugger::explain::unforced::UnforcedWatch;
+use stickslip_debugger::explain::unforced::PlaceWatch;
 use stickslip_platform::files::Output;
 use stickslip_scene::solver::solver;
 use stickslip_scene::{Scene, first_of, gaps, shortest, shown, sig4, sig6};
@@ -135,7 +135,7 @@ impl<'a> Run<'a> {
         let stepper = solver.stepper().filter(|_| watched);
         let touch = stepper.map(|stepper| TouchWatch::new(stepper.state()));
         let stepper = solver.stepper();
-        let unforced = stepper.map(|stepper| UnforcedWatch::new(model, &stepper.state().start));
+        let unforced = stepper.map(|stepper| PlaceWatch::new(model, &stepper.state().start));
         let most = args.subject.solver.is_named().then_some(args.most);
         let mut tally = Tally::new(scene, args.quiet, args.stability, most);
         tally.touch = touch;

@@ -16,7 +16,7 @@ use stickslip_debugger::explain::limit_load::body_without_friction;
 use stickslip_debugger::explain::names;
 use stickslip_debugger::explain::report;
 use stickslip_debugger::explain::touch::TouchWatch;
-use stickslip_debugger::explain::unforced::UnforcedWatch;
+use stickslip_debugger::explain::unforced::PlaceWatch;
 use stickslip_debugger::history::rounds::{self, CycleWatch};
 use stickslip_debugger::record::table;
 use stickslip_scene::number::UNREPORTED;
@@ -117,7 +117,7 @@ pub struct Tally<'a> {
     /// Present if `touch: auto` has a choice.
     pub touch: Option<TouchWatch>,
     /// Present if this program solves the scene.
-    pub unforced: Option<UnforcedWatch>,
+    pub unforced: Option<PlaceWatch>,
 }
 
 impl<'a> Tally<'a> {

@@ -18,7 +18,7 @@ use crate::Spec;
 use crate::format::error::{Fault, at};
 use std::collections::{HashMap, HashSet};
 use stickslip_core::fem::lagrange::{MAX_NODES, gauss, shape};
-use stickslip_core::{Body, BodyKind, Elastic, Node, Solid};
+use stickslip_core::{Body, BodyKind, Elastic, Node, Solid, Surface};
 
 /// Fractions of a side's area below this are round-off.
 const NONE: f64 = 1e-9;
@@ -51,19 +51,29 @@ impl NamedSides {
         Ok(NamedSides(all))
     }
 
-    /// Refuses names of sides that no body has.
-    pub fn check(&self, bodies: &[Body]) -> Result<(), Fault> {
+    /// Refuses names of sides that no body has, or that the pair's nodes touch.
+    pub fn check(&self, spec: &Spec, bodies: &[Body], surfaces: &[Surface]) -> Result<(), Fault> {
         let mut known = HashSet::new();
         if self.0.iter().any(Option::is_some) {
             let sides = bodies.iter().flat_map(sides);
             known.extend(sides.map(|side| ascending(side.nodes)));
         }
-        for (k, own) in self.0.iter().enumerate() {
-            if own.iter().flatten().any(|side| !known.contains(side)) {
-                return Err(Fault::new(
-                    at!["slaves", k, "sides"],
-                    "these are not sides of the elements of a solid or beam, with all their nodes",
-                ));
+        for (k, (own, group)) in self.0.iter().zip(&spec.slaves).enumerate() {
+            let touched = surfaces.iter().filter(|one| group.on.contains(&one.name));
+            let touched = || touched.clone().flat_map(|one| &one.elements);
+            let wrong = |side: &Vec<usize>| {
+                if !known.contains(side) {
+                    Some(
+                        "these are not sides of the elements of a solid or beam, with all their nodes",
+                    )
+                } else if touched().any(|nodes| ascending(nodes) == *side) {
+                    Some("a side of a surface that the nodes touch cannot be a slave side as well")
+                } else {
+                    None
+                }
+            };
+            if let Some(why) = own.iter().flatten().find_map(wrong) {
+                return Err(Fault::new(at!["slaves", k, "sides"], why));
             }
         }
         Ok(())

@@ -152,7 +152,7 @@ fn a_soft_contact_excuses_only_its_own_bodies() {
 /// A shaft in a ring with flush ends: its corner slips off the end of the bore as both expand.
 #[test]
 fn a_corner_that_slips_off_a_flush_end_is_named_with_what_helps() {
-    let fit = |past_ends: f64, overhang: f64| {
+    let fit = |past_ends: f64, overhang: f64, end: f64| {
         format!(
             r#"(
     title: "Press fit",
@@ -165,8 +165,8 @@ fn a_corner_that_slips_off_a_flush_end_is_named_with_what_helps() {
     surfaces: [(id: "bore", along: "ring.left", past_ends: {past_ends})],
     slaves: [(nodes: ["shaft.right"], on: ["bore"])],
     supports: [(node: "shaft.left", fix: [x]), (node: "shaft.bottom", fix: [y]), (node: "ring.bottom", fix: [y])],
-    loads: [Expansion(on: "shaft", strain: 0.001)],
-    history: (path: [0, 1], increment: 0.5),
+    loads: [Expansion(on: "shaft", strain: 0.001, scale: [(0, 0), (1, 1), (2, -1)])],
+    history: (path: [0, {end}], increment: 0.5),
 )"#,
             0.5 + overhang
         )
@@ -174,16 +174,19 @@ fn a_corner_that_slips_off_a_flush_end_is_named_with_what_helps() {
     let directory = tempfile::tempdir().unwrap();
     let scene = directory.path().join("fit.ron");
     let scene = scene.to_str().unwrap();
-    std::fs::write(scene, fit(0.0, 0.0)).unwrap();
+    std::fs::write(scene, fit(0.0, 0.0, 1.0)).unwrap();
     agree(scene, 0, &["surfaces.bore.past_ends=0.5"]);
     let told = warnings(scene, 0);
     assert!(
-        told[0].contains("past the end of surface bore from increment 1 (load 0.5) on"),
+        told[0].contains("past the end of surface bore, first in increment 1 (load 0.5)"),
         "{told:?}"
     );
+    // Also if the parts are loose at the end.
+    std::fs::write(scene, fit(0.0, 0.0, 2.0)).unwrap();
+    assert_eq!(warnings(scene, 0), told);
     // The surface continues, or the node is over it, or far outside.
     for (past_ends, overhang) in [(0.5, 0.0), (0.0, 0.1), (0.0, -0.1)] {
-        std::fs::write(scene, fit(past_ends, overhang)).unwrap();
+        std::fs::write(scene, fit(past_ends, overhang, 1.0)).unwrap();
         assert_eq!(
             warnings(scene, 0),
             Vec::<String>::new(),

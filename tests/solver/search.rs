@@ -217,6 +217,9 @@ fn no_search_spends_more_than_its_limit() {
     let limit = whole / 2;
     let limited = run(name, &[("settings.search", &limit.to_string())]);
     assert!(limited.failure.is_some());
+    // Under the name of earlier revisions, too.
+    let renamed = run(name, &[("settings.search_limit", &limit.to_string())]);
+    assert_eq!(renamed.spent, limited.spent);
     // The attempt in which the limit is reached is finished: at most 60 major iterations, here with one minor iteration each.
     assert!(limited.spent <= limit + 120, "{} of {limit}", limited.spent);
 }

@@ -213,7 +213,7 @@ impl Sweep<3> {
         }
     }
 
-    /// The tangential force from which the natural map limits to the friction cone.
+    /// The tangential force that the natural map limits to the friction cone.
     fn trial(&self, place: usize) -> [f64; 2] {
         let own = self.compliance.own(place);
         let (force, motion) = (&self.forces[3 * place..], &self.motions[3 * place..]);

@@ -455,7 +455,7 @@ pub fn intervention(model: &Model, intervention: &Intervention) -> String {
         Intervention::Release { slave: s } => format!("{} follows Table 2 again", slave(model, *s)),
         Intervention::Increment(increment) => {
             format!(
-                "the increment that comes next has size {}",
+                "the increment from the last equilibrium has size {}",
                 shortest(*increment)
             )
         }

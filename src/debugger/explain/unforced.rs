@@ -122,7 +122,7 @@ impl FreeBodies {
 
 /// The motions without a force in a run, by body, and the nodes that slipped off, by surface.
 #[derive(Debug, Clone, Default)]
-pub struct UnforcedLog {
+pub struct PlaceLog {
     moved: BTreeMap<usize, UnforcedRange>,
     slipped: BTreeMap<usize, SlippedNodes>,
 }
@@ -145,7 +145,7 @@ struct UnforcedRange {
     farthest: f64,
 }
 
-impl UnforcedLog {
+impl PlaceLog {
     /// Adds the findings of an accepted increment: its number and load.
     pub fn add(&mut self, increment: u32, load: f64, findings: &[PlaceFinding]) {
         for finding in findings {
@@ -214,12 +214,12 @@ impl UnforcedLog {
         let slipped = slipped.map(|(&surface, found)| {
             let slaves = found.slaves.iter().map(|&slave| names::slave(model, slave));
             let (surface, (increment, load)) = (&model.surfaces[surface].name, found.since);
-            let [are, touched] = match found.slaves.len() {
-                1 => ["is", "it touched there or starts"],
-                _ => ["are", "they touched there or start"],
+            let [was, touched] = match found.slaves.len() {
+                1 => ["was", "it touched there or starts"],
+                _ => ["were", "they touched there or start"],
             };
             format!(
-                "{} {are} up to {} past the end of surface {surface} from increment {increment} (load {}) on: {touched} flush with it, \
+                "{} {was} up to {} past the end of surface {surface}, first in increment {increment} (load {}): {touched} flush with it, \
                  but no contact force acts past the end, and pressures next to it are too high. Set surfaces.{surface}.past_ends=0.5",
                 first_of(slaves, MOST_NODES, ", "),
                 sig4(found.farthest),
@@ -240,20 +240,20 @@ impl UnforcedLog {
 }
 
 /// Watches the accepted increments of a run for bodies that move without a force, and for nodes that slip off an end.
-pub struct UnforcedWatch {
+pub struct PlaceWatch {
     bodies: FreeBodies,
     /// The last accepted state.
     last: Arc<IncrementStart>,
-    log: UnforcedLog,
+    log: PlaceLog,
 }
 
-impl UnforcedWatch {
+impl PlaceWatch {
     /// Starts to watch a run of a model from its last accepted state.
-    pub fn new(model: &Model, start: &Arc<IncrementStart>) -> UnforcedWatch {
-        UnforcedWatch {
+    pub fn new(model: &Model, start: &Arc<IncrementStart>) -> PlaceWatch {
+        PlaceWatch {
             bodies: FreeBodies::new(model),
             last: start.clone(),
-            log: UnforcedLog::default(),
+            log: PlaceLog::default(),
         }
     }
 
@@ -266,7 +266,7 @@ impl UnforcedWatch {
     }
 
     /// The motions so far.
-    pub fn log(&self) -> &UnforcedLog {
+    pub fn log(&self) -> &PlaceLog {
         &self.log
     }
 }

@@ -6,7 +6,7 @@ use super::strip::{PointKind, Strip};
 use crate::explain::facts::{Fact, Part};
 use crate::explain::headline::brief;
 use crate::explain::strain;
-use crate::explain::unforced::UnforcedLog;
+use crate::explain::unforced::PlaceLog;
 use stickslip_core::fem::deformation::deformation;
 use stickslip_core::words::noun_for;
 use stickslip_core::{Model, Outcome, counted};
@@ -76,8 +76,8 @@ pub fn run_report(model: &Model, strips: &[Strip], frames: &[Frame]) -> (String,
 }
 
 /// The motions without a force on a line.
-pub fn unforced(strips: &[Strip]) -> UnforcedLog {
-    let mut log = UnforcedLog::default();
+pub fn unforced(strips: &[Strip]) -> PlaceLog {
+    let mut log = PlaceLog::default();
     for strip in strips {
         log.add(strip.position.increment, strip.load_factor, &strip.unforced);
     }

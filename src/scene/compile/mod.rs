@@ -70,7 +70,7 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
     interface::smoothed(spec, &names, &mut surfaces)?;
     interface::check_use(spec, &names, &on_body, &surfaces.made, &slaves)?;
     let named = NamedSides::from_spec(spec, &names)?;
-    named.check(&bodies)?;
+    named.check(spec, &bodies, &surfaces.made)?;
     faces::spread(
         spec,
         &mut names,

@@ -26,7 +26,7 @@ type Side = (usize, usize);
 type VolumeLoadKey = (usize, usize, VolumeKind, Vec<u64>);
 
 /// The volume forces of an element that replace each other from step to step: forces along the same axis, and accelerations in
-/// the same direction, which is rounded to tell it from another one. Others are added.
+/// the same direction, which is rounded so that equal directions compare equal. Others are added.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum VolumeKind {
     Force,

@@ -303,19 +303,19 @@ fn slave_surfaces_of_nodes_are_noted_with_their_reason() {
 }
 
 #[test]
-fn a_rigid_line_is_no_side_that_a_pair_may_name() {
+fn a_pair_may_name_sides_of_bodies_only_and_none_that_it_touches() {
     let text = r#"(
         title: "a block over a line",
         nodes: [
             Given(id: "n", nodes: [(1, 0.0, 0.0), (2, 1.0, 0.0), (3, 1.0, 1.0), (4, 0.0, 1.0)],
                 elements: [(part: "p", kind: quad4, nodes: [[1, 2, 3, 4]])],
-                sides: [(name: "bottom", sides: [[1, 2]])]),
+                sides: [(name: "bottom", sides: [[1, 2]]), (name: "top", sides: [[3, 4]])]),
             Line(id: "f", from: (2.0, -0.5), to: (-1.0, -0.5), elements: 1, per_element: 2),
         ],
         materials: [Elastic(id: "m", E: 1.0, nu: 0.3)],
         bodies: [Solid(id: "b", mesh: "n", material: "m")],
-        surfaces: [(id: "f", along: "f")],
-        slaves: [(nodes: ["n.bottom"], on: ["f"], sides: ["SIDE"])],
+        surfaces: [(id: "f", along: "f"), (id: "t", along: "n.top")],
+        slaves: [(nodes: ["n.bottom"], on: ["f", "t"], sides: ["SIDE"])],
         friction: (angle: 10.0),
         supports: [(node: "n.3", fix: [x, y]), (node: "n.4", fix: [x, y])],
         loads: [Force(node: "n.1", y: -1.0)],
@@ -323,13 +323,18 @@ fn a_rigid_line_is_no_side_that_a_pair_may_name() {
     )"#;
     let read = |side: &str| Scene::from_text("scene.ron", &text.replace("SIDE", side), &[]);
     assert!(read("n.bottom").is_ok(), "{:?}", read("n.bottom").err());
-    let told = read("f").map(drop).unwrap_err().to_string();
-    assert!(told.contains("not sides of the elements"), "{told}");
+    for (side, why) in [
+        ("f", "not sides of the elements"),
+        ("n.top", "that the nodes touch"),
+    ] {
+        let message = read(side).map(drop).unwrap_err().to_string();
+        assert!(message.contains(why), "{side}: {message}");
+    }
 }
 
-/// Only where the nodes do not tell the sides does a pair name them; a name must be that of a chain.
+/// A pair names its sides only where they do not follow from the nodes; a name must be that of a chain.
 #[test]
-fn a_pair_names_its_sides_where_the_nodes_do_not_tell_them() {
+fn a_pair_names_its_sides_where_they_do_not_follow_from_the_nodes() {
     assert!(
         scene(BLOCK)
             .spec
@@ -343,10 +348,10 @@ fn a_pair_names_its_sides_where_the_nodes_do_not_tell_them() {
     assert_eq!(spec.slaves[0].sides, ["n.BELOW-SIDES", "n.BELOW-SIDES-2"]);
     spec.slaves[0].sides[0] = "n.BESIDE".to_owned();
     let error = Scene::from_spec("scene.ron", spec).map(drop).unwrap_err();
-    let told = error.to_string();
+    let message = error.to_string();
     assert!(
-        told.contains("slaves[0].sides[0]: ") && told.contains("n.BESIDE"),
-        "{told}"
+        message.contains("slaves[0].sides[0]: ") && message.contains("n.BESIDE"),
+        "{message}"
     );
 }
 

@@ -53,12 +53,20 @@ pub fn of_settings() -> impl Iterator<Item = ListedScalar> {
     all.filter(|listed| listed.path.starts_with("settings."))
 }
 
+/// The path that replaces one of earlier revisions, which journals may contain; otherwise the path itself.
+fn current(path: &str) -> &str {
+    match path {
+        "settings.search_limit" => "settings.search",
+        _ => path,
+    }
+}
+
 /// Sets one scalar. Compiling the scene shows whether it is still valid.
 ///
 /// # Errors
 /// If the path does not exist, or the value has the wrong kind.
 pub fn set(spec: &mut Spec, path: &str, value: &str) -> Result<Override, SetError> {
-    let path = path.trim();
+    let path = current(path.trim());
     let mut done = None;
     walk(spec, &mut |place, scalar| {
         if done.is_none() && place.is(path) {
@@ -86,7 +94,7 @@ pub(crate) struct ScalarPath {
 
 /// Finds a scalar; `None` if the path does not exist.
 pub(crate) fn find(spec: &Spec, path: &str) -> Option<ScalarPath> {
-    let path = path.trim();
+    let path = current(path.trim());
     let (mut number, mut found) = (0, None);
     // The walk also serves setting, so it needs a mutable scene.
     walk(&mut spec.clone(), &mut |place, _| {
