@@ -411,3 +411,27 @@ fn stacked(kind: &str, corners: &[[f64; 3]], low: &str, high: &str) -> String {
         "{nodes}{elements}*SURFACE, NAME=LOW\n1, {low}\n*SURFACE, NAME=HIGH\n2, {high}\n*SURFACE INTERACTION, NAME=I\n*CONTACT PAIR, INTERACTION=I\nHIGH, LOW\n*STEP\n*STATIC\n1., 1.\n*END STEP\n"
     )
 }
+
+/// A value of zero ends a load. Accelerations in different directions are added, so that those of the second step leave a tenth of
+/// the weight.
+#[test]
+fn a_rule_sees_the_loads_that_a_step_leaves() {
+    let friction = text("friction");
+    let steps = |first: &str, second: &str| {
+        let mut parts = friction.split("*CLOAD\n");
+        let mut part = || parts.next().unwrap();
+        let (head, between, end) = (part(), part(), part());
+        let between = between.split_once('\n').unwrap().1;
+        let end = end.split_once('\n').unwrap().1;
+        let text = format!("{head}{first}\n{between}{second}\n{end}");
+        causes(&text.replace("210000., 0.3", "210000., 0.3\n*DENSITY\n1."))
+    };
+    let slides = "load above friction";
+    let pressed = "*CLOAD\nTOP, 3, -50.\nTOP, 1, 3.";
+    assert_eq!(steps(pressed, "*CLOAD\nTOP, 3, -10."), [slides]);
+    assert_eq!(steps(pressed, "*CLOAD\nTOP, 3, -10.\nTOP, 1, 0."), [""; 0]);
+    let weight = |size: f64, z: f64| format!("*DLOAD\nSLIDER, GRAV, {size}, 0., 0., {z}");
+    let heavy = weight(100.0, -1.0) + "\n*CLOAD\nTOP, 1, 1.";
+    assert_eq!(steps(&heavy, &weight(50.0, -1.0)), [""; 0]);
+    assert_eq!(steps(&heavy, &weight(90.0, 1.0)), [slides]);
+}

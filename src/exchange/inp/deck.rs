@@ -432,6 +432,27 @@ pub enum Volume {
     },
 }
 
+/// The volume forces of an element that replace each other from step to step; forces of different kinds are added.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum VolumeKind {
+    /// Forces along an axis.
+    Force(usize),
+    /// Accelerations in a direction: its components in units of 1e-9, rounded so that equal directions compare equal.
+    Gravity([i64; 3]),
+}
+
+impl Volume {
+    /// Its kind.
+    pub fn kind(&self) -> VolumeKind {
+        match self {
+            Volume::Force { axis, .. } => VolumeKind::Force(*axis),
+            Volume::Gravity { direction, .. } => {
+                VolumeKind::Gravity(direction.map(|part| (part * 1e9).round() as i64))
+            }
+        }
+    }
+}
+
 /// A warning for the user.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Remark {

@@ -10,7 +10,7 @@ use std::collections::{BTreeMap, HashMap};
 use stickslip_core::groups::{distinct, marked};
 use stickslip_core::model::{Axis, Component};
 use stickslip_exchange::inp::DeckLocation;
-use stickslip_exchange::inp::deck::{Direction, Family, Step, Value, Volume};
+use stickslip_exchange::inp::deck::{Direction, Family, Step, Value, Volume, VolumeKind};
 
 /// The values on a target, step by step, and their first location.
 struct Course {
@@ -25,29 +25,11 @@ type Side = (usize, usize);
 /// Key of volume forces that form one load: body, axis, kind and the curve.
 type VolumeLoadKey = (usize, usize, VolumeKind, Vec<u64>);
 
-/// The volume forces of an element that replace each other from step to step: forces along the same axis, and accelerations in
-/// the same direction, which is rounded so that equal directions compare equal. Others are added.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum VolumeKind {
-    Force,
-    Gravity([i64; 2]),
-}
-
-impl VolumeKind {
-    /// The axes on which a volume force acts, with its components.
-    fn parts(load: Volume) -> Vec<(usize, VolumeKind, f64)> {
-        match load {
-            Volume::Force { axis, value } => vec![(axis, VolumeKind::Force, value)],
-            Volume::Gravity {
-                acceleration,
-                direction,
-            } => {
-                let kind =
-                    VolumeKind::Gravity([0, 1].map(|axis| (direction[axis] * 1e9).round() as i64));
-                let part = |axis: usize| (axis, kind, acceleration[axis]);
-                vec![part(0), part(1)]
-            }
-        }
+/// The axes on which a volume force acts, with its components.
+fn parts(load: Volume) -> Vec<(usize, f64)> {
+    match load {
+        Volume::Force { axis, value } => vec![(axis, value)],
+        Volume::Gravity { acceleration, .. } => vec![(0, acceleration[0]), (1, acceleration[1])],
     }
 }
 
@@ -410,9 +392,8 @@ impl DeckObjects<'_> {
         let deck = self.deck;
         let listed = |step: &Step| {
             let parts = step.weights.iter().flat_map(|weight| {
-                let parts = VolumeKind::parts(weight.load).into_iter();
-                parts.map(|(axis, kind, value)| {
-                    let target = (weight.element, axis, kind);
+                parts(weight.load).into_iter().map(|(axis, value)| {
+                    let target = (weight.element, axis, weight.load.kind());
                     (target, value, weight.amplitude, weight.place)
                 })
             });
@@ -450,7 +431,7 @@ impl DeckObjects<'_> {
             }
             let density = match kind {
                 VolumeKind::Gravity(_) => self.density(body, place)?,
-                VolumeKind::Force => 1.0,
+                VolumeKind::Force(_) => 1.0,
             };
             let part = |k: usize| if k == axis { value * density } else { 0.0 };
             self.add_load(

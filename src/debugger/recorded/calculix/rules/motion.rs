@@ -3,8 +3,9 @@
 use super::numbers::vector;
 use super::shape::{DeckShape, PairShape, SlaveGap, Vector};
 use nalgebra::{Matrix3, SMatrix, SVector};
+use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
-use stickslip_exchange::inp::deck::{Value, Volume};
+use stickslip_exchange::inp::deck::{Step, Value, Volume, VolumeKind};
 use stickslip_scene::joined;
 
 /// Translations along x, y, z, then rotations about them, scaled by the body's size.
@@ -25,8 +26,8 @@ pub struct GroupMotion {
     pub centre: Vector,
     /// Largest distance of a node from the centre.
     pub size: f64,
-    /// Its loads, by what they act on.
-    pub forces: BTreeMap<[usize; 3], Force>,
+    /// Its loads.
+    pub forces: BTreeMap<LoadTarget, Force>,
     supports: SMatrix<f64, 6, 6>,
     load: Motion,
 }
@@ -142,10 +143,20 @@ fn supports<'s>(shape: &'s DeckShape, step: usize) -> impl Iterator<Item = &'s V
     model.chain(steps.flat_map(|step| &step.motions))
 }
 
+/// What a load acts on; a step replaces the earlier loads on the same target.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum LoadTarget {
+    /// A node, along an axis.
+    Node(usize, usize),
+    /// A side of an element.
+    Side(usize, usize),
+    /// An element.
+    Element(usize, VolumeKind),
+}
+
 /// A point load, or the resultant of a load on a side or an element.
 pub struct Force {
-    /// The kind of load, and its node, or its element and side.
-    of: [usize; 3],
+    target: LoadTarget,
     /// The nodes that it acts on; at least one.
     pub nodes: Vec<usize>,
     /// Where it acts.
@@ -154,17 +165,14 @@ pub struct Force {
     pub along: Vector,
 }
 
-/// The forces at the end of a step.
-fn forces(shape: &DeckShape, step: usize) -> Vec<Force> {
+/// The forces that a step gives, at its end.
+fn forces(shape: &DeckShape, step: &Step) -> Vec<Force> {
     let deck = shape.deck;
-    let Some(step) = deck.steps.get(step) else {
-        return Vec::new();
-    };
     let part = |amplitude: Option<usize>| shape.last_factor(step, amplitude);
     let mut all = Vec::new();
     for force in &step.forces {
         all.extend(force.direction.axis().map(|axis| Force {
-            of: [0, force.node, 0],
+            target: LoadTarget::Node(force.node, axis),
             nodes: vec![force.node],
             at: shape.at(force.node),
             along: Vector::ith(axis, force.value * part(force.amplitude)),
@@ -175,7 +183,7 @@ fn forces(shape: &DeckShape, step: usize) -> Vec<Force> {
             let size = -pressure.value * face.area * part(pressure.amplitude);
             let (corners, middles) = deck.face(pressure.element, pressure.side);
             all.push(Force {
-                of: [1, pressure.element, pressure.side],
+                target: LoadTarget::Side(pressure.element, pressure.side),
                 nodes: [corners, middles].concat(),
                 at: face.centre,
                 along: face.normal * size,
@@ -201,7 +209,7 @@ fn forces(shape: &DeckShape, step: usize) -> Vec<Force> {
             }
         };
         all.push(Force {
-            of: [2, weight.element, 0],
+            target: LoadTarget::Element(weight.element, weight.load.kind()),
             nodes: deck.elements[weight.element].nodes.clone(),
             at: faces.iter().map(|face| face.centre).sum::<Vector>() / faces.len() as f64,
             along: per_volume * volume * part(weight.amplitude),
@@ -264,45 +272,25 @@ fn names(mut space: Matrix3<f64>) -> Vec<String> {
 }
 
 /// The loads on a group at the end of a step, those of earlier steps included.
-fn total_forces(shape: &DeckShape, group: usize, step: usize) -> BTreeMap<[usize; 3], Force> {
+fn total_forces(shape: &DeckShape, group: usize, step: usize) -> BTreeMap<LoadTarget, Force> {
     let mut total = BTreeMap::new();
-    (0..=step).for_each(|step| add_forces(shape, group, step, &mut total));
+    for step in shape.deck.steps.iter().take(step + 1) {
+        total.retain(|target, _| match target {
+            LoadTarget::Node(..) => !step.new_forces,
+            LoadTarget::Side(..) => !step.new_pressures,
+            LoadTarget::Element(..) => !step.new_weights,
+        });
+        let mut of_step: BTreeMap<LoadTarget, Force> = BTreeMap::new();
+        let forces = forces(shape, step).into_iter();
+        for force in forces.filter(|force| shape.group(force.nodes[0]) == Some(group)) {
+            match of_step.entry(force.target) {
+                Entry::Occupied(mut known) => known.get_mut().along += force.along,
+                Entry::Vacant(new) => {
+                    new.insert(force);
+                }
+            }
+        }
+        total.extend(of_step);
+    }
     total
-}
-
-/// Adds the forces of a step to those of the steps before.
-fn add_forces(
-    shape: &DeckShape,
-    group: usize,
-    number: usize,
-    total: &mut BTreeMap<[usize; 3], Force>,
-) {
-    let Some(step) = shape.deck.steps.get(number) else {
-        return;
-    };
-    total.retain(|of, _| match of[0] {
-        0 => !step.new_forces,
-        1 => !step.new_pressures,
-        _ => !step.new_weights,
-    });
-    let mut here: BTreeMap<[usize; 3], Force> = BTreeMap::new();
-    for force in forces(shape, number) {
-        if shape.group(force.nodes[0]) == Some(group) {
-            let along = here
-                .get(&force.of)
-                .map_or_else(Vector::zeros, |of| of.along);
-            let along = along + force.along;
-            here.insert(force.of, Force { along, ..force });
-        }
-    }
-    for (of, mut force) in here {
-        // A step replaces the components that it gives.
-        if let Some(known) = total.get(&of) {
-            let known = known.along;
-            force.along = force
-                .along
-                .zip_map(&known, |new, old| if new != 0.0 { new } else { old });
-        }
-        total.insert(of, force);
-    }
 }
