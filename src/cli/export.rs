@@ -95,14 +95,11 @@ impl Args {
 pub fn main(args: &Args) -> Result<Exit, Error> {
     let interrupt = Interrupt::listen();
     let usage = |why: String| Error::Usage(why);
-    let kind = export::kind(&args.output).map_err(|e| usage(e.to_string()))?;
-    if args.frozen && !kind.may_be_frozen {
-        let message = format!(
-            "--frozen cannot be used with .{}; use .ron, .dat, .mtx or .h5",
-            kind.extension
-        );
-        return Err(usage(message));
-    }
+    let kind = match args.frozen {
+        true => export::frozen_kind(&args.output),
+        false => export::kind(&args.output),
+    };
+    let kind = kind.map_err(|e| usage(e.to_string()))?;
     let of_pictures = [
         ("--only", args.only.is_some()),
         ("--font", args.font.is_some()),

@@ -405,9 +405,8 @@ impl Source<'_> {
     fn condensed(&self) -> Result<Scene, SceneError> {
         let (name, text) = (self.name, self.text);
         let problem = read::problem(name, text)?;
-        if let Some(what) = problem.unfit_in_space() {
-            return Err(SceneError::whole(name, what));
-        }
+        let in_space = problem.check_in_space();
+        in_space.map_err(|fault| placed(name, text, &[], fault))?;
         let place = |overrides: &[Override], fault: Fault| {
             let own = Fault::new(problem.origin(&fault.path), fault.message.clone());
             match placed(name, "", overrides, fault) {

@@ -1,6 +1,6 @@
 //! A scene that has been read, and values set in it.
 
-use crate::compile::compile;
+use crate::compile::{Compiled, Groups, compile};
 use crate::format::paths::Override;
 use crate::format::{Fault, error, locate, paths};
 use crate::nodes::Names;
@@ -109,6 +109,13 @@ impl Scene {
     /// All node names and what they refer to.
     pub fn names(&self) -> &Names {
         &self.names
+    }
+
+    /// The slave group of each contact, numbered as in [`Spec::slaves`]; `None` if the scene has no slave groups.
+    pub fn slave_groups(&self) -> Option<Vec<usize>> {
+        let (spec, names, model) = (&self.spec, &self.names, &self.model);
+        let groups = Groups::from_scene(&Compiled { spec, names, model })?;
+        Some(groups.0)
     }
 
     /// The values set from outside, in order: path and value.

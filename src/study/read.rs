@@ -80,6 +80,9 @@ impl Vary {
     }
 }
 
+/// Largest number of values of a range.
+const MOST_OF_RANGE: u32 = 1000;
+
 /// A value, or the values of a range.
 fn spread(value: &str) -> Result<Vec<String>, String> {
     let Some((low, rest)) = value.split_once("..") else {
@@ -97,11 +100,12 @@ fn spread(value: &str) -> Result<Vec<String>, String> {
     };
     let number = |text: &str| text.parse::<f64>().ok().filter(|x| x.is_finite());
     let (low, high) = number(low).zip(number(high)).ok_or_else(wrong)?;
-    let count = count
-        .parse::<u32>()
-        .ok()
-        .filter(|n| (2..=1000).contains(n))
-        .ok_or_else(wrong)?;
+    let count: u32 = count.parse().map_err(|_| wrong())?;
+    if !(2..=MOST_OF_RANGE).contains(&count) {
+        return Err(format!(
+            "{value}: the range has {count} values; it must have 2 to {MOST_OF_RANGE}"
+        ));
+    }
     if even_ratios && !(low > 0.0 && high > 0.0) {
         return Err(format!(
             "{value}: the ends of a logarithmic range must be above 0"
@@ -410,5 +414,10 @@ mod tests {
         ] {
             assert!(Vary::parse(wrong).is_err(), "{wrong}");
         }
+        let many = Vary::parse("a=0..1/100000").unwrap_err();
+        assert!(
+            many.ends_with("the range has 100000 values; it must have 2 to 1000"),
+            "{many}"
+        );
     }
 }

@@ -46,9 +46,16 @@ impl App {
 }
 
 fn last_line(app: &App) -> Result<NamedText, String> {
+    // The last line may be the one that copies.
+    let copies = |line: &&String| {
+        line.split_whitespace()
+            .eq(["copy", CopyTarget::Command.word()])
+    };
     let line = app
         .history
-        .last()
+        .iter()
+        .rev()
+        .find(|line| !copies(line))
         .cloned()
         .ok_or("no command in the history yet; press : to type one")?;
     Ok(("the command".into(), line))

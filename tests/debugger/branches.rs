@@ -115,6 +115,37 @@ fn an_intervention_at_the_tip_goes_on_in_the_same_branch() {
     );
 }
 
+/// Two nodes with a friction of their own, and one with the scene's.
+const FRICTIONS: &str = "(title: \"t\", nodes: [Node(id: \"a\", at: (0, 0)), Node(id: \"b\", at: (1, 0)), Node(id: \"c\", at: (2, 0)),
+        Line(id: \"floor\", from: (5, 0), to: (-1, 0), elements: 2, per_element: 2)],
+    materials: [],
+    bodies: [Springs(id: \"k\", bars: [(nodes: [\"a\"], angle: 0, stiffness: 10), (nodes: [\"a\"], angle: 90, stiffness: 4),
+        (nodes: [\"b\"], angle: 0, stiffness: 10), (nodes: [\"b\"], angle: 90, stiffness: 4),
+        (nodes: [\"c\"], angle: 0, stiffness: 10), (nodes: [\"c\"], angle: 90, stiffness: 4)])],
+    surfaces: [(id: \"floor\", along: \"floor\")],
+    slaves: [(nodes: [\"a\", \"b\"], on: [\"floor\"], friction: (angle: 20, cohesion: 0.05)), (nodes: [\"c\"], on: [\"floor\"])],
+    friction: (angle: 30, cohesion: 0.5),
+    loads: [Force(node: \"a\", y: -1), Force(node: \"b\", y: -1), Force(node: \"c\", y: -1)],
+    history: (path: [0, 1], increment: 0.5))";
+
+#[test]
+fn a_change_of_one_field_of_the_friction_leaves_the_others_of_each_node() {
+    let mut session = Session::new(Scene::from_text("t.ron", FRICTIONS, &[]).unwrap());
+    let frictions = |session: &Session| -> Vec<(f64, f64)> {
+        let all = &session.frame().state.controls.friction;
+        all.iter().map(|one| (one.angle, one.cohesion)).collect()
+    };
+    let reply = set(&mut session, "friction.cohesion", "0.2");
+    assert_eq!(reply, "friction.cohesion changed from 0.5 and 0.05 to 0.2");
+    let alike = [(20.0, 0.2), (20.0, 0.2), (30.0, 0.2)];
+    assert_eq!(frictions(&session), alike);
+    let mut session = Session::new(Scene::from_text("t.ron", FRICTIONS, &[]).unwrap());
+    let reply = set(&mut session, "friction.angle", "5");
+    assert_eq!(reply, "friction.angle changed from 30 and 20 to 5");
+    let alike = [(5.0, 0.05), (5.0, 0.05), (5.0, 0.5)];
+    assert_eq!(frictions(&session), alike);
+}
+
 #[test]
 fn branches_of_branches_keep_their_lines_and_motions_stay_on_the_present_one() {
     let mut session = session(FLOOR);

@@ -312,6 +312,11 @@ fn each_fault_has_one_message_with_its_place() {
             "\"load\"",
             ":43:16: monitors[0].name: the name \"load\" is a reserved CSV column",
         ),
+        (
+            "\"u_x\"",
+            "\"jumped\"",
+            "monitors[0].name: the name \"jumped\" is a reserved CSV column",
+        ),
         ("\"u_x\"", "\"a,b\"", "it must not contain commas"),
         ("\"u_x\"", "\"a\\nb\"", "it must not contain commas"),
         (

@@ -355,3 +355,30 @@ fn a_motion_that_must_press_svk_out_of_its_range_is_found_before_the_run() {
             .any(|line| line.contains("to 0.000 of its length"))
     );
 }
+
+/// All nodes move as supports and contacts say, so that the first solution is in balance. Closed forms for nu = 0, by half the side:
+/// E / 2 (1 / s - s) / 2 for the neo-Hookean law, and E s (1 - s^2) / 2 / 2 for St Venant-Kirchhoff's, with the stretch s.
+#[test]
+fn a_pressed_square_shows_the_contact_forces_of_its_stresses() {
+    for (law, force) in [("neohookean", 11.25), ("svk", 7.2)] {
+        let text = format!(
+            "(title: \"t\", nodes: [Block(id: \"a\", corners: [(0, 0), (1, 1)], elements: (1, 1), element: quad4),
+                Line(id: \"f\", from: (2, 0), to: (-2, 0), elements: 1, per_element: 2)],
+              materials: [Elastic(id: \"m\", E: 100, nu: 0, law: {law})],
+              bodies: [Solid(id: \"a\", mesh: \"a\", material: \"m\")],
+              surfaces: [(id: \"f\", along: \"f\")],
+              slaves: [(nodes: [\"a.bottom\"], on: [\"f\"], start: sliding)],
+              supports: [(node: \"a.top\", fix: [x])],
+              loads: [Displacement(node: \"a.top\", component: y, value: -0.2)],
+              history: (path: [0, 1], increment: 1))"
+        );
+        let run = finished(&read(&text));
+        for node in &run.stepper.event().nodes {
+            assert!(
+                (node.f_n / force - 1.0).abs() < 1e-12,
+                "{law}: {}",
+                node.f_n
+            );
+        }
+    }
+}

@@ -1,5 +1,6 @@
 //! Thermal expansion in decks: free of stress where it is free, and the closed forms where it is not.
 
+use crate::common::{finished, read};
 use std::sync::Arc;
 use stickslip::fem::recovery::{Configuration, nodal_stresses};
 use stickslip::scene::Scene;
@@ -84,6 +85,29 @@ fn free_expansion_causes_no_stress() {
         let stress = [0.0, 0.0, across];
         let found = errors(&deck("CPE4", supports, nlgeom, HEATED), moved, stress);
         assert!(found.into_iter().all(|error| error < 1e-12), "{found:?}");
+    }
+}
+
+/// Also between the points of an amplitude, beyond them, and where two expansions act.
+#[test]
+fn a_free_body_is_longer_by_the_sum_of_its_strains_at_every_load() {
+    let text = "(title: \"t\", nodes: [Block(id: \"a\", corners: [(0, 0), (1, 1)], elements: (1, 1), element: quad4)],
+        materials: [Elastic(id: \"m\", E: 100, nu: 0.3, law: svk, plane: stress)], bodies: [Solid(id: \"a\", mesh: \"a\", material: \"m\")],
+        supports: [(node: \"a.left\", fix: [x]), (node: \"a.bottom\", fix: [y])],
+        loads: [Expansion(on: \"a\", strain: 0.1, scale: [(0, 0), (1, -1), (2, 2)]), Expansion(on: \"a\", strain: 0.2)],
+        history: (path: [0, 2, -0.5], increment: 0.25),
+        monitors: [(name: \"x\", of: Displacement(node: \"a.right.1\", component: x))])";
+    let run = finished(&read(text));
+    assert_eq!(run.accepted.len(), 18);
+    for accepted in &run.accepted {
+        let load = accepted.load;
+        let first = if load < 1.0 {
+            -load.max(0.0)
+        } else {
+            3.0 * load - 4.0
+        };
+        let strain = 0.1 * first + 0.2 * load;
+        assert!((accepted.monitors["x"] - strain).abs() < 1e-10, "{load}");
     }
 }
 

@@ -330,8 +330,20 @@ fn contacts_in_space_are_read_and_what_they_cannot_have_is_refused() {
         (("[-1, 0.25, 0]", "[-1, 0.25, 0, 1]"), "it has 4 numbers"),
         (
             ("[0, 0, 1]]", "[0, 0, 1], [1, 0, 0]]"),
-            "the matrix has 3 rows",
+            "1:119: matrix: it has 4 rows; 3 are needed",
         ),
+        (("[0, 0, 1]]", "]"), "it has 2 rows; 3 are needed"),
+        (
+            ("[0, 0, 1]]", "[0, 1]]"),
+            "row 3 has 2 numbers; 3 are needed",
+        ),
+        (("gap: 0.5", "start: sliding"), "a contact starts free"),
+        (("gap: 0.5", "state: (f_n: 1)"), "a contact starts free"),
+        (
+            ("free: ", "history: (path: [0, 2]), free: "),
+            "solved in one increment",
+        ),
+        (("free: ", "spacing: 2, free: "), "nor spacing"),
         (("\"a\"", "\"floor\""), "already used"),
         (("angle: 20", "angle: 90"), "below 90"),
         (("[[1", "[[1e13"), "1e12"),

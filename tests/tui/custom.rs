@@ -208,7 +208,7 @@ fn what_is_selected_is_copied_and_named() {
         (
             "c : f r i c t i o n Space 2 0 Enter",
             "copy command",
-            "copy command",
+            "friction 20",
         ),
     ] {
         let (text, told) = copied("osc-two6", keys, line);

@@ -18,7 +18,7 @@ use crate::elements::lagrange::{self, MAX_NODES};
 use crate::fem::continuum;
 use crate::fem::element::{Element, Previous};
 use crate::linalg::Pattern;
-use crate::model::{BodyKind, Dofs, Factor, PressedFace, Update};
+use crate::model::{BodyKind, Dofs, PressedFace, Update};
 use crate::{Material, Model};
 use std::cell::RefCell;
 use std::f64::consts::TAU;
@@ -114,18 +114,11 @@ impl Pressures {
         }
     }
 
-    /// Calls `add` with degree of freedom and force of every node of every face at displacements u; `factor` returns the
-    /// multiplier of a pressure.
-    pub fn each(
-        &self,
-        model: &Model,
-        u: &[f64],
-        factor: impl Fn(&Factor) -> f64,
-        mut add: impl FnMut(usize, f64),
-    ) {
+    /// Calls `add` with degree of freedom and force of every node of every face at displacements u; `size` returns the value of a
+    /// pressure, by its number.
+    pub fn each(&self, u: &[f64], size: impl Fn(usize) -> f64, mut add: impl FnMut(usize, f64)) {
         for face in &self.faces {
-            let pressure = &model.pressures[face.pressure];
-            let size = pressure.value * factor(&pressure.scale);
+            let size = size(face.pressure);
             let now = face.now(u);
             for (weight, n, d) in &face.points {
                 let at = face.along(&now, n, d);
@@ -138,8 +131,7 @@ impl Pressures {
         }
         let work = &mut *self.work.borrow_mut();
         for element in &self.expanding {
-            let expansion = &model.pressures[element.pressure];
-            let size = expansion.value * factor(&expansion.scale);
+            let size = size(element.pressure);
             let (force, _) = element.response(u, work);
             for (&dof, part) in element.dofs.iter().zip(force) {
                 add(dof, -size * part);
@@ -158,8 +150,7 @@ impl Pressures {
         coupling: &mut [f64],
     ) {
         for face in &self.faces {
-            let pressure = &model.pressures[face.pressure];
-            let size = pressure.value * pressure.scale.at(load_factor);
+            let size = model.pressure(face.pressure, load_factor);
             let count = face.dofs.len();
             face.each_entry(u, size, |row, column, value| {
                 if let Some(slot) = face.slots[row * count + column] {
@@ -171,8 +162,7 @@ impl Pressures {
         }
         let work = &mut *self.work.borrow_mut();
         for element in self.expanding.iter().filter(|element| !element.small) {
-            let expansion = &model.pressures[element.pressure];
-            let size = expansion.value * expansion.scale.at(load_factor);
+            let size = model.pressure(element.pressure, load_factor);
             let (_, tangent) = element.response(u, work);
             let entries = element.slots.iter().zip(tangent).enumerate();
             for (k, (slot, value)) in entries {

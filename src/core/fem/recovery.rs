@@ -83,9 +83,10 @@ fn each_element(
         let BodyKind::Solid(solid) = &body.kind else {
             continue;
         };
-        let expansions = model.pressures.iter().filter(|p| p.expands == Some(b));
+        let expansions = model.pressures.iter().enumerate();
         let expansion = expansions
-            .map(|p| p.value * p.scale.at(at.load_factor))
+            .filter(|(_, p)| p.expands == Some(b))
+            .map(|(k, _)| model.pressure(k, at.load_factor))
             .sum();
         for element in &solid.elements {
             let elastic = &solid.materials[element.material];

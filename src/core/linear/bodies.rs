@@ -16,7 +16,7 @@ use crate::linear::sizes::Sizes;
 use crate::linear::source::value;
 use crate::linear::system::System;
 use crate::linear::tangent::Tangent;
-use crate::model::{Contact, Factor, MonitorQuantity, Surface};
+use crate::model::{Contact, MonitorQuantity, Surface};
 use crate::plane::{larger, plus};
 use crate::{
     ContactState, Deformation, Estimate, Friction, InterfaceProblem, JudgedLaw, LinearisationPoint,
@@ -534,10 +534,9 @@ impl Source for Bodies {
             MonitorQuantity::Reaction { dof } => {
                 let loads = self.model.loads.iter().filter(|load| load.dof == *dof);
                 let mut load: f64 = loads.map(|l| l.value * l.scale.at(at.last_target)).sum();
-                let (factor, own) = (|scale: &Factor| scale.at(at.last_target), *dof);
-                let pressures = &self.system.pressures;
-                pressures.each(&self.model, at.u, factor, |dof, part| {
-                    load += if dof == own { part } else { 0.0 };
+                let size = |k: usize| self.model.pressure(k, at.last_target);
+                self.system.pressures.each(at.u, size, |own, part| {
+                    load += if own == *dof { part } else { 0.0 };
                 });
                 self.system.internal()[*dof] - load - self.system.interaction(*dof)
             }

@@ -22,7 +22,6 @@ use super::source::{LinearisationPoint, LoadEquation};
 use super::system::System;
 use crate::Model;
 use crate::linalg::SolveError;
-use crate::model::Factor;
 use crate::plane::{dot, max_abs};
 
 /// A border is singular if its pivot is below this fraction of its terms.
@@ -81,8 +80,8 @@ impl System {
                 border.rate[equation] += load.value * load.scale.slope(at.target);
             }
         }
-        let slope = |scale: &Factor| scale.slope(at.target);
-        self.pressures.each(model, at.u, slope, |dof, part| {
+        let rate = |k: usize| model.pressure_rate(k, at.target);
+        self.pressures.each(at.u, rate, |dof, part| {
             if let Some(equation) = model.dofs.equation[dof] {
                 border.rate[equation] += part;
             }

@@ -10,7 +10,6 @@ use super::violation::violation;
 use crate::Model;
 use crate::fem::pressure::Pressures;
 use crate::linalg::Factors;
-use crate::model::Factor;
 use crate::plane::larger;
 
 impl System {
@@ -209,7 +208,7 @@ pub(super) fn loads(
     for load in &model.loads {
         out[load.dof] += load.value * load.scale.at(target);
     }
-    let factor = |scale: &Factor| scale.at(target);
-    pressures.each(model, at.u, factor, |dof, part| out[dof] += part);
+    let size = |k: usize| model.pressure(k, target);
+    pressures.each(at.u, size, |dof, part| out[dof] += part);
     add_drag(model, at, sizes, out);
 }

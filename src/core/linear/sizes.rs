@@ -60,8 +60,11 @@ impl Sizes {
         }
         if !model.pressures.is_empty() {
             let (mut force, rest) = (vec![0.0; model.dofs.len()], vec![0.0; model.dofs.len()]);
-            let peak = |scale: &Factor| peak(&model.path, scale);
-            Pressures::new(model).each(model, &rest, peak, |dof, part| force[dof] += part);
+            let size = |k: usize| {
+                let pressure = &model.pressures[k];
+                pressure.value * peak(&model.path, &pressure.scale)
+            };
+            Pressures::new(model).each(&rest, size, |dof, part| force[dof] += part);
             let largest = max_abs(&force);
             sizes.reference = sizes.reference.max(largest);
         }

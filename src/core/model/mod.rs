@@ -389,6 +389,36 @@ impl Model {
         self.pressures.iter().all(|p| p.expands.is_some_and(small))
     }
 
+    /// The strain, along a length, of all expansions of a body at a load factor, and its derivative. Zero for small displacements,
+    /// whose law has no other strain.
+    fn expansion(&self, body: Option<usize>, load_factor: f64) -> [f64; 2] {
+        let large = |body: &usize| !self.bodies[*body].is_small();
+        let mut sum = [0.0; 2];
+        if let Some(body) = body.filter(large) {
+            for p in self.pressures.iter().filter(|p| p.expands == Some(body)) {
+                sum[0] += p.value * p.scale.at(load_factor);
+                sum[1] += p.value * p.scale.slope(load_factor);
+            }
+        }
+        sum
+    }
+
+    /// A pressure at a load factor. Of an expansion with large displacements the Green strain, of which the law is made: its part of
+    /// E = e + e²/2, where e is the sum of the body's expansions.
+    pub fn pressure(&self, pressure: usize, load_factor: f64) -> f64 {
+        let p = &self.pressures[pressure];
+        let [e, _] = self.expansion(p.expands, load_factor);
+        p.value * p.scale.at(load_factor) * (1.0 + 0.5 * e)
+    }
+
+    /// Derivative of [`Model::pressure`] with respect to the load factor.
+    pub fn pressure_rate(&self, pressure: usize, load_factor: f64) -> f64 {
+        let p = &self.pressures[pressure];
+        let [e, rate] = self.expansion(p.expands, load_factor);
+        p.value
+            * (p.scale.slope(load_factor) * (1.0 + 0.5 * e) + p.scale.at(load_factor) * 0.5 * rate)
+    }
+
     /// Initial position of the node of each equation; the origin for internal unknowns of bodies.
     pub fn positions_of_equations(&self) -> Vec<[f64; 2]> {
         let mut positions = vec![[0.0; 2]; self.dofs.equations];

@@ -15,8 +15,9 @@ use std::sync::Arc;
 pub(super) const DIVERGED: f64 = 1e4;
 /// If round-off keeps the residual above the tolerance, displacements must change by less than this fraction of the length.
 const STILL: f64 = 1e-8;
-/// Largest difference of the forces of the last minor iteration from those of an accepted state, by the force scale: the judge's.
-const REPORTED: f64 = 1e-8;
+/// Largest difference of the forces of the last minor iteration from those of an accepted state, by the force scale: between
+/// linear bodies the judge's, otherwise the digits that are shown.
+const REPORTED: [f64; 2] = [1e-8, 1e-6];
 /// With old factors, displacements have converged within this fraction of the length, whatever the tolerance.
 const NEAR: f64 = 1e-10;
 /// Fraction of the out-of-balance force that a major iteration with old factors may leave before the factors are renewed.
@@ -77,10 +78,12 @@ impl Stepper {
         let drowned = after.noise > Norms::LOUDEST;
         // A motion larger than the scene's length has diverged, however large its round-off.
         let still = after.correction < 1.0;
-        // Forces between linear bodies that stick balance at once, whatever the directions along which they were solved for.
-        let reported = REPORTED.max(settings.tolerance) * after.scale;
-        let turned = constant
-            && !at_limit
+        // Forces between linear bodies that stick balance at once, whatever the directions along which they were solved for, and
+        // so do those on nodes whose motion is given by supports and contacts.
+        let [linear, nonlinear] = REPORTED;
+        let least = if constant { linear } else { nonlinear };
+        let reported = least.max(settings.tolerance) * after.scale;
+        let turned = !at_limit
             && after.correction > STILL
             && differ(&self.event.nodes, &self.now.state.nodes, reported);
         let unfinished = turned || self.now.state.is_carried(&after);

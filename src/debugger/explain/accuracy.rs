@@ -42,10 +42,13 @@ pub fn sweeps(event: &Event) -> String {
     }
 }
 
-/// The natural map of forces that were accepted without a solve for their modes, relative to the forces.
+/// The natural map of forces that were accepted without a solve for their modes, relative to the forces. In space, where all forces
+/// are those of sweeps, only if it is larger than usual.
 pub fn natural_map(event: &Event) -> Option<f64> {
-    let settled = event.nodes.first()?.decision.rule == Rule::Settled;
-    first_test(event).filter(|_| settled).map(|test| test.value)
+    let first = event.nodes.first()?;
+    let error = first_test(event).map(|test| test.value)?;
+    let noted = first.directions.is_none() || error > SETTLED;
+    (noted && first.decision.rule == Rule::Settled).then_some(error)
 }
 
 /// The note [`not_unique`] for an event whose forces are not unique.

@@ -1,6 +1,7 @@
 //! Explanations of what happened, why, and what to do about it, in the wording shared by the command line and
 //! the debugger.
 //!
+//! - `current_scene`: the scene with the changes made during a run.
 //! - [`names`]: words for nodes, modes and positions; [`round_off`]: which numbers are round-off; [`report`]:
 //!   what happened, in sentences; [`cycles`]: cycles of modes; [`judged`]: the judge's findings.
 //! - [`influence`]: which node pushed which; [`tested`]: the quantities that Table 2 tests; [`core`]: the smallest set of nodes that still cycles;
@@ -31,6 +32,7 @@ pub mod bond;
 pub mod conditions;
 pub mod cone_problem;
 pub mod core;
+pub(crate) mod current_scene;
 pub mod cycles;
 pub mod diagnosis;
 pub mod examination;

@@ -12,7 +12,7 @@ use stickslip_core::{
     Decision, Event, Failure, Intervention, Model, MotionEvent, Outcome, Position, Rule, Singular,
     State, TestedQuantity, counted,
 };
-use stickslip_scene::{first_of, joined, shortest, sig2, sig4, sig6};
+use stickslip_scene::{few, first_of, joined, shortest, sig2, sig4, sig6};
 
 /// Why Table 2 decided as it did; `friction` is whether there is any.
 pub fn reason(decision: &Decision, friction: bool) -> String {
@@ -465,9 +465,13 @@ pub fn intervention(model: &Model, intervention: &Intervention) -> String {
             sig6(f.cohesion)
         ),
         Intervention::Frictions(all) => {
-            let angle = all.first().map_or(0.0, |first| first.angle);
-            let angle = sig6(angle);
-            format!("friction angle {angle} degrees, cohesion by area")
+            let values = |of: fn(&stickslip_core::Friction) -> f64| {
+                let mut values: Vec<String> = all.iter().map(|one| sig6(of(one))).collect();
+                values.dedup();
+                few(values, 3)
+            };
+            let (angle, cohesion) = (values(|one| one.angle), values(|one| one.cohesion));
+            format!("friction angle {angle} degrees, cohesion {cohesion}")
         }
         Intervention::Settings(_) => "settings changed".into(),
         Intervention::Parameter { name, value } => format!("{name} set to {value}"),

@@ -1,14 +1,13 @@
 //! Tries a changed scene from its start to the load of a failure, for changes that are impossible within a run,
 //! such as another mesh or material law.
 
+use super::current_scene::CurrentScene;
 use std::collections::HashSet;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use stickslip_core::model::MonitorQuantity;
 use stickslip_core::plane::distance;
-use stickslip_core::{
-    Failure, Intervention, JudgedLaw, Model, RunEnd, State, Status, Stepper, Until,
-};
+use stickslip_core::{Failure, JudgedLaw, Model, RunEnd, State, Status, Stepper, Until};
 use stickslip_scene::format::paths;
 use stickslip_scene::{Scene, Spec};
 
@@ -63,33 +62,17 @@ pub struct Restart {
 /// The solver of a scene at its start, with the settings and friction of a failed state and then these changes, by path. `None`
 /// if the scene cannot be built.
 pub fn changed(spec: &Spec, state: &State, changes: &[(String, String)]) -> Option<Stepper> {
-    let mut spec = Spec {
-        settings: state.controls.settings,
-        ..spec.clone()
+    let scene = Scene::from_spec("original", spec.clone()).ok()?;
+    let current = CurrentScene {
+        scene: &scene,
+        controls: &state.controls,
     };
+    let mut spec = current.spec();
     for (path, value) in changes {
         paths::set(&mut spec, path, value).ok()?;
     }
-    let own = spec.slaves.iter().filter_map(|group| group.friction);
-    let by_area = own
-        .chain([spec.friction])
-        .any(|friction| friction.adhesion != 0.0);
     let model = Scene::from_spec("changed", spec).ok()?.model;
-    let mut stepper = Stepper::new(Arc::new(model));
-    // A friction change for all nodes applies to the new nodes, too. Node groups and cohesion by area keep the scene's
-    // values.
-    if !by_area
-        && let [first, rest @ ..] = state.controls.friction.as_slice()
-        && rest.iter().all(|friction| friction == first)
-        && stepper
-            .model()
-            .contacts
-            .iter()
-            .any(|contact| contact.friction != *first)
-    {
-        stepper.intervene(&Intervention::Friction(*first)).ok()?;
-    }
-    Some(stepper)
+    Some(Stepper::new(Arc::new(model)))
 }
 
 /// Whether a finer mesh has slave nodes, contact points of faces, supports, loads and monitors wherever the other mesh has them. A

@@ -9,7 +9,7 @@ use std::collections::HashSet;
 use stickslip_core::contact::projection::{Projection, projection_at, tangent};
 use stickslip_core::fem::pressure::Pressures;
 use stickslip_core::linear::singular::LooseMotion;
-use stickslip_core::model::{Factor, Load};
+use stickslip_core::model::Load;
 use stickslip_core::plane::dot;
 use stickslip_core::{Mode, Model, RigidMotion, Singular, State, Stepper};
 use stickslip_scene::{first_of, shortest, sig4};
@@ -118,11 +118,12 @@ impl<'a> BodyMotion<'a> {
                 _ => 0.0,
             })
         };
-        let factor = |scale: &Factor| scale.at(state.load_factor);
-        let of = |load: &Load| Some(load.value * factor(&load.scale) * rate(load.dof)?);
+        let at = state.load_factor;
+        let of = |load: &Load| Some(load.value * load.scale.at(at) * rate(load.dof)?);
         let dead: f64 = model.loads.iter().filter_map(of).sum();
         let mut following = 0.0;
-        Pressures::new(model).each(model, &state.u, factor, |dof, force| {
+        let size = |k: usize| model.pressure(k, at);
+        Pressures::new(model).each(&state.u, size, |dof, force| {
             following += rate(dof).map_or(0.0, |rate| force * rate);
         });
         dead + following

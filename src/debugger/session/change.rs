@@ -1,8 +1,8 @@
 //! Changes at the cursor: interventions, given sequences of steps, and settings.
 
-use super::current_scene::CurrentScene;
 use super::machine::{Session, Task};
 use super::worker::Steps;
+use crate::explain::current_scene::CurrentScene;
 use crate::explain::report;
 use crate::history::branches;
 use crate::refusal::Refusal;

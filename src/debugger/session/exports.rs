@@ -12,7 +12,7 @@ use crate::record::export::export_state::{ExportState, PictureRequest};
 use crate::record::export::{self, ExportKind, Origin};
 use crate::refusal::{Refusal, refusal};
 use crate::{ExportScope, Strip};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 use stickslip_core::{Event, Model, ReportedProblem, State, Status, Stepper};
 use stickslip_platform::files;
@@ -53,11 +53,7 @@ pub(super) fn write(stepper: &mut Stepper, ask: &Export) -> Result<(), Refusal> 
             let text = core_of(stepper, &ask.state, &ask.origin)?;
             return Ok(files::write(&ask.file, text, ask.overwrite)?);
         }
-        // For compatibility, `whole` accepts any extension.
-        ExportScope::Whole => match export::kind(&ask.file) {
-            Ok(kind) if kind.may_be_frozen => shown(stepper, ask, kind)?,
-            _ => shown(stepper, ask, export::kind(Path::new("a.ron"))?)?,
-        },
+        ExportScope::Whole => shown(stepper, ask, export::frozen_kind(&ask.file)?)?,
         ExportScope::Shown => shown(stepper, ask, export::kind(&ask.file)?)?,
     };
     let kind = export::kind(&ask.file).ok();
@@ -139,9 +135,9 @@ pub fn write_posed(model: &Model, posed: &ReportedProblem, ask: &Export) -> Resu
     if posed.tangents == 2 {
         return Err(Refusal::new(IN_SPACE));
     }
-    let text = match (ask.what, export::kind(&ask.file)) {
-        (ExportScope::Core, _) => core_of_reported(model, &ask.state, posed, &ask.origin)?,
-        (_, Ok(kind)) if kind.may_be_frozen && kind.extension != "ron" => {
+    let text = match ask.what {
+        ExportScope::Core => core_of_reported(model, &ask.state, posed, &ask.origin)?,
+        _ if export::frozen_kind(&ask.file)?.extension != "ron" => {
             let problem = interface_scene::problem(model, &ask.state, posed);
             let (scene, mut stepper) = interface_scene::stepper(problem)?;
             let shown = PictureContext {

@@ -2,8 +2,7 @@
 //!
 //! - [`machine`]: the state machine: its data, and how commands start and end. Their effects are in one module
 //!   per subject: `motion` (through the history), `change` (interventions), `questions` (background analyses).
-//! - [`timeline`]: the shown line of the history and the cursor; [`connection`]: the solver as the session sees
-//!   it; `current_scene`: the scene with the changes made during a run.
+//! - [`timeline`]: the shown line of the history and the cursor; [`connection`]: the solver as the session sees it.
 //! - [`worker`]: the thread that solves; [`background`]: the thread that analyses; [`exports`]: the files it
 //!   writes; `trials`: one of the analyses.
 //! - `recorded_run`: sessions on recorded runs.
@@ -13,7 +12,6 @@ pub mod background;
 pub mod background_messages;
 mod change;
 pub mod connection;
-mod current_scene;
 pub mod exports;
 pub mod journal_writer;
 pub mod machine;

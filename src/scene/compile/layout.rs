@@ -206,15 +206,11 @@ impl Layout {
                     limits::finite(&here.then("strain"), *strain, "the strain")?;
                     let body = volumes::expanding(bodies, on).at(here.then("on"))?;
                     let scale = factor(&here.then("scale"), scale)?;
-                    loads.pressures.push(if bodies[body].is_small() {
-                        Pressure {
-                            faces: Vec::new(),
-                            expands: Some(body),
-                            value: *strain,
-                            scale,
-                        }
-                    } else {
-                        volumes::large_expansion(body, *strain, &scale)
+                    loads.pressures.push(Pressure {
+                        faces: Vec::new(),
+                        expands: Some(body),
+                        value: *strain,
+                        scale,
                     });
                     continue;
                 }

@@ -12,8 +12,18 @@ use stickslip_core::{Contact, Control, Dofs, Monitor, MonitorQuantity};
 /// Name of the last monitor of an arc-length history.
 const ARC: &str = "arc";
 
-/// Columns that every CSV has.
-const RESERVED: [&str; 4] = ["increment", "load", "majors", "minors"];
+/// Columns that a CSV may have besides the monitors.
+const RESERVED: [&str; 9] = [
+    "increment",
+    "load",
+    "majors",
+    "minors",
+    "jumped",
+    "stability",
+    "worst_stretch",
+    "status",
+    "unsettled",
+];
 
 /// The monitors with their degrees of freedom and slaves.
 pub(super) fn monitors(

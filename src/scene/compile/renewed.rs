@@ -39,7 +39,7 @@ pub(crate) struct Compiled<'a> {
 
 /// The slave group of each contact.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Groups(Vec<usize>);
+pub(crate) struct Groups(pub(crate) Vec<usize>);
 
 impl Choices {
     /// The choices of a scene.

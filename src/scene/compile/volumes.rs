@@ -5,9 +5,7 @@ use super::super::nodes::Names;
 use crate::format::error::{AtPath, Fault, Path, none_called};
 use std::collections::{BTreeMap, HashMap, HashSet};
 use stickslip_core::fem::continuum::{self, Sample};
-use stickslip_core::model::{
-    Body, Elastic, ElementKind, Factor, Law, Pressure, Solid, SolidElement, Update,
-};
+use stickslip_core::model::{Body, Elastic, ElementKind, Law, Solid, SolidElement, Update};
 
 /// Consistent forces ∫ N_i b w dA of a force b per volume, by ascending node number, where w is the width across the plane; `on`
 /// names a solid, or a block or mesh used by solids.
@@ -94,20 +92,6 @@ pub(super) fn expanding(bodies: &[Body], on: &str) -> Result<usize, String> {
         ));
     }
     Ok(place)
-}
-
-/// The same in Green strains, E = e + e²/2, of which the law is made; between the points of the amplitude in proportion.
-pub(super) fn large_expansion(body: usize, strain: f64, scale: &Factor) -> Pressure {
-    let green = |e: f64| e + 0.5 * e * e;
-    let value = green(strain);
-    let part = |&(at, part): &(f64, f64)| (at, green(strain * part) / value);
-    let points = scale.0.iter().filter(|_| value != 0.0);
-    Pressure {
-        faces: Vec::new(),
-        expands: Some(body),
-        value,
-        scale: Factor(points.map(part).collect()),
-    }
 }
 
 fn jacobian(point: &Sample, at: &[[f64; 2]]) -> f64 {

@@ -15,7 +15,7 @@
 //! [`Problem::spec`] converts it to an ordinary scene: the contacts in a row above an endless floor y = 0, where u_n = u_y and
 //! u_t = −u_x.
 
-use super::error::{Path, Step, at};
+use super::error::{Fault, Path, Step, at, bail};
 use super::in_space::SpaceSpec;
 use super::notation;
 use super::spec::{BodySpec, History, LoadSpec, Nodes, SlaveSpec, Spec, SurfaceSpec};
@@ -23,7 +23,7 @@ use crate::joined;
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize};
 use stickslip_core::plane::max_abs;
-use stickslip_core::{Friction, InitialState, Mode, Settings};
+use stickslip_core::{Friction, InitialState, Mode, Settings, counted};
 use stickslip_exchange::problem;
 
 /// First word of an interface problem file.
@@ -237,17 +237,54 @@ impl Problem {
         }
     }
 
-    /// What a problem in space cannot have; `None` if there is nothing.
-    pub(crate) fn unfit_in_space(&self) -> Option<&'static str> {
-        let loaded = |contact: &Contact| contact.load != [0.0; 2];
-        match &self.matrix {
-            _ if self.tangents == 1 => None,
-            Matrix::Stiffness(_) => Some("matrix: a problem in space needs a compliance"),
-            _ if self.contacts.iter().any(loaded) => {
-                Some("load: a problem in space has no loads; add W load to free")
-            }
-            _ => None,
+    /// Rejects what a problem in space cannot have.
+    pub(crate) fn check_in_space(&self) -> Result<(), Fault> {
+        if self.tangents == 1 {
+            return Ok(());
         }
+        let count = 3 * self.contacts.len();
+        match &self.matrix {
+            Matrix::Stiffness(_) => {
+                bail!(at!["matrix"], "a problem in space needs a compliance")
+            }
+            Matrix::Compliance(rows) => {
+                if rows.len() != count {
+                    let have = counted(rows.len(), "row");
+                    bail!(
+                        at!["matrix"],
+                        "it has {have}; {count} are needed, three per contact"
+                    );
+                }
+                if let Some(k) = rows.iter().position(|row| row.len() != count) {
+                    let have = counted(rows[k].len(), "number");
+                    bail!(
+                        at!["matrix", k],
+                        "row {} has {have}; {count} are needed",
+                        k + 1
+                    );
+                }
+            }
+            Matrix::Entries(_) => {}
+        }
+        for (k, contact) in self.contacts.iter().enumerate() {
+            let here = at!["contacts", k];
+            if contact.load != [0.0; 2] {
+                bail!(
+                    here.then("load"),
+                    "a problem in space has no loads; add W load to free"
+                );
+            }
+            if (contact.start, &contact.state) != (Mode::Free, &InitialState::default()) {
+                bail!(here, "in space a contact starts free and without a state");
+            }
+        }
+        if self.history != History::default() || self.spacing.is_some() {
+            bail!(
+                Path::default(),
+                "a problem in space has neither history nor spacing: it is solved in one increment"
+            );
+        }
+        Ok(())
     }
 
     /// The problem in space.

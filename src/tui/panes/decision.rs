@@ -565,7 +565,7 @@ fn inequality(test: &Test, view: &View) -> String {
         None => "?",
     };
     let (name, bound) = tested::sides(test.tested);
-    let bound = bound.map_or("0".into(), |bound| format!("{bound} {}", long(test.bound)));
+    let bound = bound.map_or(String::new(), |bound| format!("{bound} ")) + &long(test.bound);
     format!(" {name} {} {sign} {bound}", long(test.value))
 }
 

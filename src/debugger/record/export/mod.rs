@@ -157,6 +157,21 @@ pub fn kind(file: &Path) -> Result<&'static ExportKind, Refusal> {
     })
 }
 
+/// The kind of a file of the frozen problem.
+///
+/// # Errors
+/// If the extension is unknown, or belongs to another kind.
+pub fn frozen_kind(file: &Path) -> Result<&'static ExportKind, Refusal> {
+    let kind = kind(file)?;
+    if kind.may_be_frozen {
+        return Ok(kind);
+    }
+    Err(refusal!(
+        "--frozen cannot be used with .{}; use .ron, .dat, .mtx or .h5",
+        kind.extension
+    ))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
