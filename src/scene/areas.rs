@@ -51,14 +51,22 @@ impl NamedSides {
         Ok(NamedSides(all))
     }
 
-    /// Refuses names of sides that no body has, or that the pair's nodes touch.
-    pub fn check(&self, spec: &Spec, bodies: &[Body], surfaces: &[Surface]) -> Result<(), Fault> {
+    /// Refuses names of sides that no body has, on which no node of the pair lies, or that these nodes touch.
+    pub fn check(
+        &self,
+        spec: &Spec,
+        names: &Names,
+        bodies: &[Body],
+        surfaces: &[Surface],
+    ) -> Result<(), Fault> {
         let mut known = HashSet::new();
         if self.0.iter().any(Option::is_some) {
             let sides = bodies.iter().flat_map(sides);
             known.extend(sides.map(|side| ascending(side.nodes)));
         }
         for (k, (own, group)) in self.0.iter().zip(&spec.slaves).enumerate() {
+            let nodes = group.nodes.iter().flat_map(|name| names.nodes(name));
+            let nodes: HashSet<usize> = nodes.flatten().collect();
             let touched = surfaces.iter().filter(|one| group.on.contains(&one.name));
             let touched = || touched.clone().flat_map(|one| &one.elements);
             let wrong = |side: &Vec<usize>| {
@@ -66,6 +74,8 @@ impl NamedSides {
                     Some(
                         "these are not sides of the elements of a solid or beam, with all their nodes",
                     )
+                } else if !side.iter().any(|node| nodes.contains(node)) {
+                    Some("no node of one of these sides is among the pair's nodes")
                 } else if touched().any(|nodes| ascending(nodes) == *side) {
                     Some("a side of a surface that the nodes touch cannot be a slave side as well")
                 } else {

@@ -6,6 +6,7 @@ use crate::number::sig4;
 use crate::overlaps;
 use crate::pressed;
 use crate::unmatched;
+use stickslip_core::contact::element::closed;
 use stickslip_core::contact::facing::{MOST as MOST_SURFACES, faced};
 use stickslip_core::contact::projection::{project, projection_at};
 use stickslip_core::fem::lagrange;
@@ -17,6 +18,8 @@ use stickslip_core::{
 
 /// Gaps below this fraction of the scene's length count as zero.
 const NONE: f64 = 1e-9;
+/// How far past an end of a surface nodes are still flush with it, in units of ξ of its last element.
+const FLUSH: f64 = 0.5;
 /// Maximum number of names in a warning.
 const MOST: usize = 5;
 /// Above this cosine, the outward sides of a slave's body and of its surface count as facing the same way.
@@ -299,9 +302,16 @@ pub(super) fn adjust(nodes: &mut [Node], surfaces: &[Surface], contacts: &[Conta
     }
 }
 
-/// Records the initial penetration of the slave nodes, to be closed over the first leg.
+/// Records the initial penetration of the slave nodes, to be closed over the first leg. Nodes flush with an end of their surface, or
+/// a little past it, have one too: they may touch the surface later.
 pub(super) fn ramp(nodes: &[Node], surfaces: &[Surface], contacts: &mut [Contact]) {
-    let stands = stands(nodes, surfaces, contacts);
+    let mut longer = surfaces.to_vec();
+    for surface in &mut longer {
+        if !closed(surface) && !surface.endless {
+            surface.past_ends = surface.past_ends.map(|past| past.max(FLUSH));
+        }
+    }
+    let stands = stands(nodes, &longer, contacts);
     for (contact, stand) in contacts.iter_mut().zip(stands) {
         contact.overlap = stand.map_or(0.0, |(_, gap)| (-gap).max(0.0));
     }

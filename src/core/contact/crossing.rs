@@ -94,6 +94,30 @@ pub fn find(
     })
 }
 
+/// Whether two surfaces whose ends coincide (0: the start, 1: the end of each) form a concave corner there: past it, each would
+/// continue inside the other.
+pub fn ends_in_corner(surfaces: [&Surface; 2], ends: [usize; 2], positions: &[[f64; 2]]) -> bool {
+    let slopes = [0, 1].map(|k| {
+        let (number, xi) = match ends[k] {
+            0 => (0, -1.0),
+            _ => (surfaces[k].elements.len() - 1, 1.0),
+        };
+        let element = SurfaceElement::from_surface(surfaces[k], number);
+        blend(element.nodes, positions, &element.shape(xi).d)
+    });
+    let normals = slopes.map(right_of);
+    let half = 0.5
+        * cross(normals[0], normals[1])
+            .abs()
+            .atan2(dot(normals[0], normals[1]));
+    let enters = |k: usize| {
+        let along = dot(slopes[k], normals[1 - k]) / length(slopes[k]);
+        let out = if ends[k] == 0 { -along } else { along };
+        out < -PARALLEL
+    };
+    enters(0) && enters(1) && half > STRAIGHT
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

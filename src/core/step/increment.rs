@@ -25,10 +25,12 @@ impl Iterate {
         }
         let left = self.state.major.target - self.state.major.last_target;
         let whole = self.state.load_factor - self.state.start.load_factor;
-        if left.abs() < SMALLEST_PART * whole.abs() {
+        let target = self.state.major.last_target + left / 2.0;
+        // A damped motion keeps its load, and the rest of a small increment may be round-off: no half is left then.
+        if left.abs() < SMALLEST_PART * whole.abs() || target == self.state.major.target {
             return false;
         }
-        self.state.major.target = self.state.major.last_target + left / 2.0;
+        self.state.major.target = target;
         self.linearised = false;
         self.state.begin_again();
         true

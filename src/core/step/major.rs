@@ -1,7 +1,7 @@
 //! The end of a major iteration: updates displacements, forces and geometry, and checks whether the increment has converged.
 
 use crate::contact::corner::least_friction;
-use crate::model::{AtLimit, ResidualMethod, SlipCount, Sticking};
+use crate::model::{AtLimit, Prescribed, ResidualMethod, SlipCount, Sticking};
 use crate::step::iterate::Iterate;
 use crate::step::major_history::RepeatScales;
 use crate::step::recovery::PATIENCE;
@@ -86,7 +86,7 @@ impl Stepper {
         let turned = !at_limit
             && after.correction > STILL
             && differ(&self.event.nodes, &self.now.state.nodes, reported);
-        let unfinished = turned || self.now.state.is_carried(&after);
+        let unfinished = turned || self.now.state.is_carried(&after) || self.now.lags();
         if settled && balanced && !drowned && !unfinished {
             return self.finish(after);
         }
@@ -136,6 +136,15 @@ impl Stepper {
 }
 
 impl Iterate {
+    /// Whether a prescribed displacement is not yet that of the load factor: along an arc, a solution may pass a bend of its
+    /// amplitude.
+    fn lags(&self) -> bool {
+        let (state, model) = (&self.state, &self.model);
+        let lag = |p: &Prescribed| p.value * p.scale.at(state.load_factor) - state.u[p.dof];
+        let mut prescribed = model.prescribed.iter();
+        state.way.is_some() && prescribed.any(|p| lag(p).abs() > NEAR * p.value.abs())
+    }
+
     /// Whether the settings keep old factors where they help: under load control, without damping.
     pub(super) fn keeps_factors(&self) -> bool {
         let state = &self.state;

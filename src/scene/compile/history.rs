@@ -4,6 +4,7 @@ use super::super::limits;
 use crate::format::error::{Fault, at, bail, fault};
 use crate::format::spec::History;
 use crate::sig4;
+use stickslip_core::model::Factor;
 use stickslip_core::{Body, Control, Settings, Touch, counted};
 
 /// Rejects an empty or endless path.
@@ -93,6 +94,32 @@ fn of_legs(history: &History) -> Result<(), Fault> {
         }
     }
     Ok(())
+}
+
+/// The corners of the path. With `control: arc` the points of the amplitudes are corners too: the loads change their course there,
+/// so that the arc of the leg before does not continue.
+pub(super) fn corners<'a>(
+    history: &History,
+    scales: impl Iterator<Item = &'a Factor> + Clone,
+) -> Vec<f64> {
+    let mut path = history.path.clone();
+    if history.control != Control::Arc {
+        return path;
+    }
+    path.truncate(1);
+    for leg in history.path.windows(2) {
+        let (from, to) = (leg[0], leg[1]);
+        let points = scales.clone().flat_map(|scale| &scale.0);
+        let mut bends: Vec<f64> = points
+            .map(|point| point.0)
+            .filter(|at| (from.min(to)..from.max(to)).contains(at) && *at != from)
+            .collect();
+        bends.sort_by(|a, b| (a - from).abs().total_cmp(&(b - from).abs()));
+        bends.dedup();
+        path.extend(bends);
+        path.push(to);
+    }
+    path
 }
 
 /// Number of increments along a path: each leg is divided into increments of its size, plus a shorter last one if needed.

@@ -7,6 +7,7 @@ use super::super::nodes::Names;
 use super::super::nodes::checks::unique;
 use super::bodies::{chain, check_chain};
 use super::laws;
+use super::meeting_ends::{self, coincide};
 use crate::Spec;
 use crate::format::contact_law::FrictionSpec;
 use crate::format::error::{Fault, Path, at, bail, none_called, quoted};
@@ -37,7 +38,12 @@ impl Surfaces {
 
 /// The surfaces, walked so that the outward side is on the right. Unconnected sides of a given mesh become separate surfaces
 /// `ID.1`, `ID.2`, …
-pub(super) fn surfaces(spec: &Spec, names: &Names, length: f64) -> Result<Surfaces, Fault> {
+pub(super) fn surfaces(
+    spec: &Spec,
+    names: &Names,
+    on_body: &[bool],
+    length: f64,
+) -> Result<Surfaces, Fault> {
     unique("surfaces", spec.surfaces.iter().map(|s| s.id.as_str()))?;
     let mut all = Surfaces {
         made: Vec::with_capacity(spec.surfaces.len()),
@@ -62,6 +68,7 @@ pub(super) fn surfaces(spec: &Spec, names: &Names, length: f64) -> Result<Surfac
                 elements.reverse();
                 elements.iter_mut().for_each(|element| element.reverse());
             }
+            meeting_ends::close(elements, &names.nodes, on_body, length);
         }
         if surface.cut {
             pieces = pieces
@@ -120,7 +127,7 @@ pub(super) fn surfaces(spec: &Spec, names: &Names, length: f64) -> Result<Surfac
 }
 
 /// The nodes where a chain begins and where it ends.
-fn end_nodes(elements: &[Vec<usize>]) -> [Option<usize>; 2] {
+pub(super) fn end_nodes(elements: &[Vec<usize>]) -> [Option<usize>; 2] {
     let first = elements.first().and_then(|nodes| nodes.first());
     let last = elements.last().and_then(|nodes| nodes.last());
     [first.copied(), last.copied()]
@@ -350,6 +357,7 @@ pub(super) fn check_use(
     on_body: &[bool],
     surfaces: &[Surface],
     slaves: &[Contact],
+    length: f64,
 ) -> Result<(), Fault> {
     let mut used = on_body.to_vec();
     surfaces
@@ -364,7 +372,14 @@ pub(super) fn check_use(
             spec.nodes[entry.at],
             Nodes::Chain { .. } | Nodes::Mesh { .. } | Nodes::Given { .. }
         ) || is_side(spec, spec.nodes[entry.at].id());
-        let idle = entry.nodes.iter().find(|&&n| !used[n]);
+        // The first node of a closed chain stands for the last one, at the same place.
+        let closed = |n: usize| match entry.nodes[..] {
+            [first, .., last] => {
+                n == last && used[first] && coincide(&names.nodes, [first, n], length)
+            }
+            _ => false,
+        };
+        let idle = entry.nodes.iter().find(|&&n| !used[n] && !closed(n));
         if let (Some(&node), false) = (idle, shares) {
             bail!(
                 at!["nodes", entry.at, "id"],

@@ -12,6 +12,7 @@ mod interface;
 mod laws;
 mod layout;
 mod linear;
+mod meeting_ends;
 mod monitors;
 mod point_force;
 mod pressures;
@@ -31,6 +32,7 @@ pub use history::increments;
 use layout::Layout;
 pub(crate) use layout::Loads;
 pub(crate) use renewed::{Choices, Compiled, Groups, renewed};
+use std::collections::HashSet;
 use stickslip_core::groups::marked;
 use stickslip_core::model::diagonal;
 use stickslip_core::{Estimate, InitialGaps, Model};
@@ -65,12 +67,12 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
             "all nodes are at the same position, so the scene has no length scale"
         );
     }
-    let mut surfaces = interface::surfaces(spec, &names, length)?;
+    let mut surfaces = interface::surfaces(spec, &names, &on_body, length)?;
     let (mut slaves, mut pairs) = interface::slaves(spec, &names, &surfaces, length)?;
     interface::smoothed(spec, &names, &mut surfaces)?;
-    interface::check_use(spec, &names, &on_body, &surfaces.made, &slaves)?;
+    interface::check_use(spec, &names, &on_body, &surfaces.made, &slaves, length)?;
     let named = NamedSides::from_spec(spec, &names)?;
-    named.check(spec, &bodies, &surfaces.made)?;
+    named.check(spec, &names, &bodies, &surfaces.made)?;
     faces::spread(
         spec,
         &mut names,
@@ -112,6 +114,12 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
     let dofs = layout.number(&mut bodies);
     loads.extend(linear::free_motions(spec, &bodies, &dofs));
     interface::find_rigid(&dofs, &mut surfaces)?;
+    let moved: HashSet<usize> = prescribed
+        .iter()
+        .filter_map(|p| Some(dofs.node_of(p.dof)?.0))
+        .collect();
+    let is_moved = |node: usize| moved.contains(&node);
+    meeting_ends::cross(&mut surfaces, &slaves, &names.nodes, is_moved, length);
     let mut surfaces = surfaces.made;
     point_force::find_gives(
         spec.settings.point_force,
@@ -128,6 +136,10 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
     let monitors = monitors::monitors(spec, &names, &on_body, &dofs, &slaves)?;
     let arc = arc::arc(spec, &names, &monitors, &slaves)?;
     let settings = history::resolved(&spec.settings, &bodies);
+    let scales = loads.iter().map(|load| &load.scale);
+    let scales = scales.chain(pressures.iter().map(|pressure| &pressure.scale));
+    let scales = scales.chain(prescribed.iter().map(|moved| &moved.scale));
+    let path = history::corners(&spec.history, scales);
     let model = Model {
         title: spec.title.clone(),
         about: spec.about.clone(),
@@ -139,7 +151,7 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
         loads,
         pressures,
         prescribed,
-        path: spec.history.path.clone(),
+        path,
         increment: spec.history.increment,
         increments: spec.history.increments.clone(),
         least: spec.history.least,

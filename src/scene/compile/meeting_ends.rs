@@ -1,0 +1,83 @@
+//! Ends of rigid surfaces that coincide. A chain whose ends coincide is closed. Where two surfaces that a node may touch end in one
+//! point, in a concave corner, each continues past it into the body of the other, so that they cross
+//! ([`stickslip_core::contact::crossing`]).
+
+use super::interface::{Surfaces, end_nodes};
+use stickslip_core::contact::crossing::ends_in_corner;
+use stickslip_core::plane::distance;
+use stickslip_core::{Contact, Node};
+
+/// Distance of ends that coincide, relative to the scene's length.
+const SAME: f64 = 1e-9;
+/// How far a surface continues past a corner, in units of ξ of its end element.
+const PAST: f64 = 1.0;
+
+/// Whether two nodes are at the same place.
+pub(super) fn coincide(nodes: &[Node], [a, b]: [usize; 2], length: f64) -> bool {
+    distance(nodes[a].at, nodes[b].at) <= SAME * length
+}
+
+/// Ends a chain of nodes without bodies at the node where it begins, if its last node is at the same place.
+pub(super) fn close(elements: &mut [Vec<usize>], nodes: &[Node], on_body: &[bool], length: f64) {
+    let is_rigid = elements.iter().flatten().all(|&node| !on_body[node]);
+    let [Some(first), Some(last)] = end_nodes(elements) else {
+        return;
+    };
+    let same = coincide(nodes, [first, last], length);
+    if let [_, .., end] = elements
+        && let Some(end) = end.last_mut()
+        && is_rigid
+        && same
+    {
+        *end = first;
+    }
+}
+
+/// Lets the rigid surfaces that end in a concave corner cross there; surfaces with prescribed nodes, which may part, stay as they
+/// are.
+pub(super) fn cross(
+    surfaces: &mut Surfaces,
+    slaves: &[Contact],
+    nodes: &[Node],
+    is_prescribed: impl Fn(usize) -> bool,
+    length: f64,
+) {
+    let at: Vec<[f64; 2]> = nodes.iter().map(|node| node.at).collect();
+    let mut pairs: Vec<[usize; 2]> = slaves
+        .iter()
+        .filter(|slave| slave.bond.is_hard())
+        .flat_map(|slave| {
+            let all = slave.surfaces.iter().enumerate();
+            all.flat_map(|(k, &one)| {
+                slave.surfaces[k + 1..]
+                    .iter()
+                    .map(move |&other| [one, other])
+            })
+        })
+        .collect();
+    pairs.sort_unstable();
+    pairs.dedup();
+    for pair in pairs {
+        let both = pair.map(|k| &surfaces.made[k]);
+        let stays = both
+            .iter()
+            .all(|s| s.rigid && !s.endless && !s.nodes().any(|&node| is_prescribed(node)));
+        if !stays || surfaces.listed[pair[0]] == surfaces.listed[pair[1]] {
+            continue;
+        }
+        let own = both.map(|surface| end_nodes(&surface.elements));
+        for ends in [[0, 0], [0, 1], [1, 0], [1, 1]] {
+            let both = pair.map(|k| &surfaces.made[k]);
+            let meet = [0, 1].map(|k| own[k][ends[k]]);
+            if let [Some(a), Some(b)] = meet
+                && coincide(nodes, [a, b], length)
+                && ends_in_corner(both, ends, &at)
+            {
+                for (k, end) in pair.into_iter().zip(ends) {
+                    let past = &mut surfaces.made[k].past_ends[end];
+                    *past = past.max(PAST);
+                }
+            }
+        }
+    }
+}
