@@ -212,6 +212,18 @@ pub fn whole<T: std::str::FromStr>(text: &str) -> Result<T, String> {
     number.ok_or_else(|| "expected a whole number, not negative".to_owned())
 }
 
+/// Refuses to replace the input, even with `--force`.
+pub fn spare_input(input: &str, output: &Path) -> Result<(), Error> {
+    let place = |path: &Path| path.canonicalize().ok();
+    if place(output).is_some_and(|output| place(Path::new(input)) == Some(output)) {
+        let output = output.display();
+        return Err(usage!(
+            "{output} is the input; the output needs another file"
+        ));
+    }
+    Ok(())
+}
+
 /// Rejects options that name the same file.
 pub fn distinct(named: &[(&str, Option<&str>)]) -> Result<(), Error> {
     let given = || named.iter().filter_map(|(_, name)| *name);

@@ -5,7 +5,7 @@
 //! Exit code 0: the scene was written. Exit code 3: there is none, and the message gives the reason: the scene converges, fails
 //! otherwise, or its core cannot be written as a matrix.
 
-use super::base::{Error, Exit, notify, put, run_to_end};
+use super::base::{Error, Exit, notify, put, run_to_end, spare_input};
 use super::solver::{SubjectArgs, step_to_end};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -36,6 +36,10 @@ pub struct Args {
 
 pub fn main(args: &Args) -> Result<Exit, Error> {
     if args.output.as_os_str() != "-" {
+        spare_input(
+            args.subject.scene.as_deref().unwrap_or_default(),
+            &args.output,
+        )?;
         // Checked before the solve, so that the result of a long solve can be written; leaves no file behind.
         drop(Output::create(&args.output, args.force)?);
     }

@@ -1,7 +1,7 @@
 //! `stickslip export INPUT -o FILE`: converts a scene, snapshot, journal or mesh; the extension selects the format
 //! ([`stickslip_debugger::record::export`]).
 
-use super::base::{Error, Exit, SetArgs, notify, usage};
+use super::base::{Error, Exit, SetArgs, notify, spare_input, usage};
 use super::course::Course;
 use super::front;
 use super::interrupt::Interrupt;
@@ -131,6 +131,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     // Checked before the solve, so that the result of a long solve can be written; leaves no file behind.
     let names = kind.files(&args.output).map_err(usage)?;
     for name in &names {
+        spare_input(args.input(), name)?;
         drop(Output::create(name, args.force)?);
     }
     if args.input.is_none() {

@@ -1,10 +1,9 @@
 //! `--json`: the result of a subcommand as data, to standard output or to a file. The records are in [`super::records`].
 
 use super::base::{Error, usage};
-use super::sink::Sink;
+use super::sink::{Sink, is_input};
 use serde::Serialize;
 use std::fmt::Write;
-use std::path::Path;
 use stickslip_platform::files::Output;
 use stickslip_scene::shown;
 
@@ -38,12 +37,6 @@ impl JsonArgs {
         }
         self.to().map(|to| Sink::open(to, overwrite)).transpose()
     }
-}
-
-/// Whether a file has the extension of one that the program reads, and never of JSON.
-fn is_input(file: &str) -> bool {
-    let extension = Path::new(file).extension();
-    extension.is_some_and(|own| own == "ron" || own == "inp")
 }
 
 /// Writes a record whole, if it is requested.

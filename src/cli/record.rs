@@ -1,6 +1,6 @@
 //! `stickslip record`: solves up to a position, and writes a snapshot of it.
 
-use super::base::{Error, Exit, answer, notify};
+use super::base::{Error, Exit, answer, notify, spare_input};
 use super::interrupt::Interrupt;
 use super::place::{RunPosition, missed, seek};
 use super::solver::{Subject, SubjectArgs};
@@ -31,6 +31,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         .output
         .clone()
         .unwrap_or_else(|| default_name(&scene, args.at));
+    spare_input(&scene.name, &path)?;
     let output = match path.as_os_str() {
         name if name == "-" => None,
         _ => Some(Output::create(&path, args.force)?),

@@ -1,6 +1,6 @@
 //! Output files of `stickslip run`.
 
-use super::base::{Error, OutputState, distinct};
+use super::base::{Error, OutputState, distinct, spare_input};
 use super::grids::{GridInterval, Grids};
 use super::json::JsonArgs;
 use super::sink::Sink;
@@ -67,6 +67,9 @@ impl RunOutputs {
             ("--json", args.json.to()),
             ("--snapshot", snapshot.as_deref()),
         ])?;
+        if let Some(snapshot) = &args.snapshot {
+            spare_input(&scene.name, snapshot)?;
+        }
         let sink = |to: &Option<String>| match to {
             Some(to) => Sink::open(to, force).map(Some),
             None => Ok(None),

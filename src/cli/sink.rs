@@ -1,6 +1,6 @@
 //! Destination of a table: a file or standard output.
 
-use super::base::{Error, OutputState, say};
+use super::base::{Error, OutputState, say, usage};
 use std::io::{self, Write};
 use std::path::Path;
 use stickslip_platform::files::Output;
@@ -13,11 +13,22 @@ pub enum Sink {
     File(Box<Output>),
 }
 
+/// Whether a file has the extension of one that the program reads, and never of a table or record.
+pub fn is_input(file: &str) -> bool {
+    let extension = Path::new(file).extension();
+    extension.is_some_and(|own| own == "ron" || own == "inp")
+}
+
 impl Sink {
     /// Opens a file, or standard output for `-`.
     pub fn open(to: &str, overwrite: bool) -> Result<Sink, Error> {
         if to == "-" {
             return Ok(Sink::Standard);
+        }
+        if is_input(to) {
+            return Err(usage!(
+                "{to}: a scene, deck or snapshot has such a name, but a table or record is to be written; name another file"
+            ));
         }
         let output = Output::create(Path::new(to), overwrite)?;
         Ok(Sink::File(Box::new(output)))

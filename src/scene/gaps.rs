@@ -6,6 +6,7 @@ use crate::number::sig4;
 use crate::overlaps;
 use crate::pressed;
 use crate::unmatched;
+use std::collections::BTreeMap;
 use stickslip_core::contact::element::closed;
 use stickslip_core::contact::facing::{MOST as MOST_SURFACES, faced};
 use stickslip_core::contact::projection::{project, projection_at};
@@ -18,7 +19,7 @@ use stickslip_core::{
 
 /// Gaps below this fraction of the scene's length count as zero.
 const NONE: f64 = 1e-9;
-/// How far past an end of a surface nodes are still flush with it, in units of ξ of its last element.
+/// `past_ends` with which nodes flush with an end of a surface are on it.
 const FLUSH: f64 = 0.5;
 /// Maximum number of names in a warning.
 const MOST: usize = 5;
@@ -144,6 +145,7 @@ pub fn warnings(model: &Model) -> Vec<String> {
             sig4(deepest)
         ));
     }
+    all.extend(missed_by_ramp(model));
     all.extend(unheld(model));
     all.extend(overlaps::at_start(model));
     all.extend(pressed::warnings(model));
@@ -302,17 +304,40 @@ pub(super) fn adjust(nodes: &mut [Node], surfaces: &[Surface], contacts: &[Conta
     }
 }
 
-/// Records the initial penetration of the slave nodes, to be closed over the first leg. Nodes flush with an end of their surface, or
-/// a little past it, have one too: they may touch the surface later.
+/// Records the initial penetration of the slave nodes, to be closed over the first leg.
 pub(super) fn ramp(nodes: &[Node], surfaces: &[Surface], contacts: &mut [Contact]) {
-    let mut longer = surfaces.to_vec();
-    for surface in &mut longer {
-        if !closed(surface) && !surface.endless {
-            surface.past_ends = surface.past_ends.map(|past| past.max(FLUSH));
-        }
-    }
-    let stands = stands(nodes, &longer, contacts);
+    let stands = stands(nodes, surfaces, contacts);
     for (contact, stand) in contacts.iter_mut().zip(stands) {
         contact.overlap = stand.map_or(0.0, |(_, gap)| (-gap).max(0.0));
     }
+}
+
+/// Warns of the nodes of a press fit that are inside a body, but past the ends of its surface: they have no overlap to be closed
+/// gradually.
+fn missed_by_ramp(model: &Model) -> Vec<String> {
+    if model.settings.initial_gaps != InitialGaps::Ramp {
+        return Vec::new();
+    }
+    let mut longer = model.surfaces.clone();
+    for surface in longer.iter_mut().filter(|s| !closed(s) && !s.endless) {
+        surface.past_ends = surface.past_ends.map(|past| past.max(2.0 * FLUSH));
+    }
+    let [own, all] = [&model.surfaces, &longer].map(|s| stands(&model.nodes, s, &model.contacts));
+    let mut missed: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    for (slave, (own, stand)) in own.iter().zip(all).enumerate() {
+        if let (None, Some((spot, gap))) = (own, stand)
+            && gap < -NONE * model.length
+        {
+            missed.entry(spot.surface).or_default().push(slave);
+        }
+    }
+    let words = |(surface, slaves): (usize, Vec<usize>)| {
+        format!(
+            "{} start inside surface {}, but past its ends, so that they are not pushed out over the first leg, but at once where \
+             they come to touch it; past_ends: {FLUSH} makes them start on the surface",
+            some(model, &slaves),
+            model.surfaces[surface].name
+        )
+    };
+    missed.into_iter().map(words).collect()
 }

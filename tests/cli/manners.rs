@@ -328,3 +328,27 @@ fn a_node_off_all_surfaces_has_a_dash_for_a_gap() {
     let cells: Vec<&str> = row.split_whitespace().collect();
     assert_eq!(cells[..3], ["l.40", "free", "-"], "{row}");
 }
+
+#[test]
+fn no_output_replaces_the_input_or_writes_a_table_into_a_scene() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    let scene = std::fs::read_to_string(top("problems/osc-snap.ron")).unwrap();
+    std::fs::write(here.join("a.ron"), &scene).unwrap();
+    for line in [
+        "run a.ron --csv a.ron",
+        "run a.ron --trace a.ron",
+        "run a.ron --snapshot a.ron",
+        "run a.ron --snapshot ./a.ron",
+        "record a.ron --at 1 -o a.ron",
+        "export a.ron -o a.ron",
+        "core a.ron -o a.ron",
+        "study a.ron --vary settings.slip=step --csv a.ron",
+        "map a.ron --over settings.majors=20,30 --csv a.ron",
+    ] {
+        let output = ran(here, &[&words(line)[..], &["--force"]].concat());
+        assert_eq!(code(&output), 2, "{line}: {}", err(&output));
+        let kept = std::fs::read_to_string(here.join("a.ron")).unwrap();
+        assert_eq!(kept, scene, "{line}");
+    }
+}

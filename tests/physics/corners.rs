@@ -1,7 +1,7 @@
 //! Concave corners and convex vertices, against closed forms: a node in a valley, on a ridge and over it, a block between a
 //! floor and a wall, a wheel at a step; and problem 02, whose bent elements make small corners everywhere.
 
-use crate::common::{Run, finished, last, run, scene};
+use crate::common::{Run, finished, last, read, run, scene};
 use stickslip::contact::table2::Rule;
 use stickslip::model::Mode;
 use stickslip::scene::Scene;
@@ -355,5 +355,70 @@ fn a_node_at_the_bottom_of_a_valley_stays_there_while_both_sides_hold_it() {
                 "{slope}, {friction}"
             );
         }
+    }
+}
+
+/// A node on springs, pressed onto two lines and pushed along them, alternatively onto the chain of both.
+fn groove(lines: &str, surfaces: &str, on: &str) -> Scene {
+    read(&format!(
+        "(title: \"t\", nodes: [Node(id: \"p\", at: (0.2, 0.6)), {lines}], materials: [],
+          bodies: [Springs(id: \"k\", bars: [(nodes: [\"p\"], angle: 0, stiffness: 1), (nodes: [\"p\"], angle: 90, stiffness: 1)])],
+          surfaces: [{surfaces}], slaves: [(nodes: [\"p\"], on: [{on}])], friction: (angle: 10),
+          loads: [Force(node: \"p\", y: -3), Force(node: \"p\", x: -1, scale: [(0, 0), (1, 0), (2, 3)])],
+          history: (path: [0, 1, 2, 0], increment: 0.1),
+          monitors: [(name: \"x\", of: Contact(component: x)), (name: \"y\", of: Contact(component: y)),
+                     (name: \"u\", of: Displacement(node: \"p\", component: x))])"
+    ))
+}
+
+#[test]
+fn surfaces_that_end_in_one_point_hold_a_node_like_one_chain() {
+    let line = |id: &str, from: &str, to: &str| {
+        format!("Line(id: \"{id}\", from: {from}, to: {to}, elements: 1, per_element: 2)")
+    };
+    let l = line("l", "(0, 0)", "(-1, 1)");
+    let r = line("r", "(1, 1)", "(0, 0)");
+    let two = groove(
+        &format!("{l}, {r}"),
+        "(id: \"l\", along: \"l\"), (id: \"r\", along: \"r\")",
+        "\"l\", \"r\"",
+    );
+    let one = groove(
+        "Through(id: \"v\", points: [(1, 1), (0, 0), (-1, 1)], per_element: 2)",
+        "(id: \"v\", along: \"v\")",
+        "\"v\"",
+    );
+    let [two, one] = [two, one].map(|scene| finished(&scene).accepted);
+    assert_eq!(two.len(), 40);
+    for (a, b) in two.iter().zip(&one) {
+        for name in ["x", "y", "u"] {
+            let error = (a.monitors[name] - b.monitors[name]).abs();
+            assert!(error < 1e-9, "{} {name}: {error}", a.load);
+        }
+    }
+}
+
+#[test]
+fn a_chain_that_returns_to_its_start_is_closed() {
+    let scene = read(
+        "(title: \"t\", nodes: [Node(id: \"p\", at: (1.05, -0.5)),
+            Arc(id: \"c\", center: (0, 0), radius: 1, from: 0, to: 360, elements: 12, per_element: 3)], materials: [],
+          bodies: [Springs(id: \"k\", bars: [(nodes: [\"p\"], angle: 0, stiffness: 10), (nodes: [\"p\"], angle: 90, stiffness: 0.01)])],
+          surfaces: [(id: \"c\", along: \"c\")], slaves: [(nodes: [\"p\"], on: [\"c\"])], friction: (angle: 5),
+          loads: [Force(node: \"p\", x: -4, scale: [(0, 0), (1, 1)]),
+                  Displacement(node: \"p\", component: y, value: 1, scale: [(0, 0), (1, 0), (2, 1)])],
+          history: (path: [0, 1, 2], increment: 0.1),
+          monitors: [(name: \"x\", of: Displacement(node: \"p\", component: x)), (name: \"y\", of: Displacement(node: \"p\", component: y)),
+                     (name: \"free\", of: Modes(mode: free))])",
+    );
+    let accepted = finished(&scene).accepted;
+    let touching = accepted
+        .iter()
+        .filter(|state| state.monitors["free"] == 0.0);
+    assert!(touching.clone().count() > 10);
+    for state in touching {
+        let [x, y] = ["x", "y"].map(|name| state.monitors[name]);
+        let radius = (1.05 + x).hypot(y - 0.5);
+        assert!((radius - 1.0).abs() < 3e-4, "{}: {radius}", state.load);
     }
 }

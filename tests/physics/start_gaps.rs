@@ -1,6 +1,6 @@
 //! Gaps that a scene starts with: shown, warned of, adjusted without stress, or closed like a press fit.
 
-use crate::common::{self, finished, run, scene};
+use crate::common::{self, finished, read, run, scene};
 use stickslip::scene::Scene;
 use stickslip::scene::gaps::{start_gaps, warnings};
 use stickslip::step::event::Outcome;
@@ -295,5 +295,41 @@ fn points_of_faces_hold_their_body_and_tell_a_surface_that_is_turned() {
     assert!(
         turned[0].starts_with("surface top faces away from all its slave nodes"),
         "{turned:?}"
+    );
+}
+
+/// Two rings whose ends are flush. Lamé's pressure of half the interference is 0.586; the elements of the arcs are straight.
+#[test]
+fn a_press_fit_warns_of_nodes_past_the_ends_and_with_past_ends_all_are_ramped() {
+    let ring = |id: &str, from: f64, to: f64| {
+        format!(
+            "Block(id: \"{id}\", elements: (2, 8), corners: [({from:?}, 0), ({to:?}, 0), (0, {to:?}), (0, {from:?})],
+               sides: (left: Arc(center: (0, 0)), right: Arc(center: (0, 0))))"
+        )
+    };
+    let fit = |past: &str| {
+        read(&format!(
+            "(title: \"t\", nodes: [{}, {}], materials: [Elastic(id: \"m\", E: 1000, nu: 0.3, plane: stress, update: small)],
+              bodies: [Solid(id: \"in\", mesh: \"in\", material: \"m\"), Solid(id: \"out\", mesh: \"out\", material: \"m\")],
+              surfaces: [(id: \"bore\", along: \"out.left\", smooth: true{past})], slaves: [(nodes: [\"in.right\"], on: [\"bore\"])],
+              supports: [(node: \"in.bottom\", fix: [y]), (node: \"out.bottom\", fix: [y]), (node: \"in.top\", fix: [x]),
+                         (node: \"out.top\", fix: [x])],
+              history: (path: [0, 1], increment: 0.5), settings: (initial_gaps: ramp), monitors: [(name: \"p\", of: Pressure())])",
+            ring("in", 1.0, 2.0),
+            ring("out", 1.99, 3.0),
+        ))
+    };
+    let missed = |scene: &Scene| {
+        let all = warnings(&scene.model).into_iter();
+        all.filter(|text| text.contains("past its ends")).count()
+    };
+    assert_eq!(missed(&fit("")), 1);
+    let scene = fit(", past_ends: 0.5");
+    assert_eq!(missed(&scene), 0);
+    let half = &finished(&scene).accepted[0];
+    assert!(
+        (half.monitors["p"] / 0.586 - 1.0).abs() < 0.02,
+        "{}",
+        half.monitors["p"]
     );
 }

@@ -356,6 +356,58 @@ fn a_motion_that_must_press_svk_out_of_its_range_is_found_before_the_run() {
     );
 }
 
+/// A bar that is pressed by an amplitude, along an arc: it may rise in proportion within the path, but not bend there.
+#[test]
+fn an_arc_follows_amplitudes_in_proportion_and_refuses_bends() {
+    let text = |scale: &str, path: &str| {
+        format!(
+            "(title: \"t\", nodes: [Block(id: \"a\", corners: [(0, 0), (1, 1)], elements: (1, 1), element: quad4),
+                Line(id: \"f\", from: (2, 0), to: (-2, 0), elements: 1, per_element: 2)],
+              materials: [Elastic(id: \"m\", E: 100, nu: 0, update: small)], bodies: [Solid(id: \"a\", mesh: \"a\", material: \"m\")],
+              surfaces: [(id: \"f\", along: \"f\", endless: true)], slaves: [(nodes: [\"a.bottom\"], on: [\"f\"], start: sliding)],
+              supports: [(node: \"a.top\", fix: [x])],
+              loads: [Displacement(node: \"a.top\", component: y, value: -0.01, scale: {scale})],
+              history: (path: {path}, increment: 0.25, control: arc),
+              monitors: [(name: \"y\", of: Contact(component: y))])"
+        )
+    };
+    for (scale, path) in [
+        ("[(0, 0), (2, 0.5)]", "[0, 2]"),
+        ("[(0, 0), (1, 0.25), (2, 0.5), (5, 9)]", "[0, 1, 2, 0.5]"),
+    ] {
+        let scene = read(&text(scale, path));
+        let accepted = finished(&scene).accepted;
+        for state in &accepted {
+            let force = state.monitors["y"];
+            assert!((force - 0.25 * state.load).abs() < 1e-9, "{}", state.load);
+        }
+    }
+    for (scale, path, at) in [
+        (
+            "[(0, 0), (1, 1), (2, 0.25)]",
+            "[0, 1, 2]",
+            "bends at the load factor 1",
+        ),
+        (
+            "[(0.5, 0), (2, 1)]",
+            "[0, 2]",
+            "bends at the load factor 0.5",
+        ),
+        (
+            "[(0, 0), (1.5, 1)]",
+            "[0, 2]",
+            "bends at the load factor 1.5",
+        ),
+    ] {
+        let refused = Scene::from_text("t.ron", &text(scale, path), &[]).unwrap_err();
+        let refused = refused.to_string();
+        assert!(
+            refused.contains("loads[0].scale") && refused.contains(at),
+            "{refused}"
+        );
+    }
+}
+
 /// All nodes move as supports and contacts say, so that the first solution is in balance. Closed forms for nu = 0, by half the side:
 /// E / 2 (1 / s - s) / 2 for the neo-Hookean law, and E s (1 - s^2) / 2 / 2 for St Venant-Kirchhoff's, with the stretch s.
 #[test]

@@ -1,11 +1,16 @@
 //! The load-factor path and the settings.
 
 use super::super::limits;
+use crate::Spec;
 use crate::format::error::{Fault, at, bail, fault};
 use crate::format::spec::History;
 use crate::sig4;
 use stickslip_core::model::Factor;
+use stickslip_core::plane::range;
 use stickslip_core::{Body, Control, Settings, Touch, counted};
+
+/// Relative difference of two slopes, up to which they are equal.
+const SAME: f64 = 1e-9;
 
 /// Rejects an empty or endless path.
 pub(super) fn history(history: &History) -> Result<(), Fault> {
@@ -96,30 +101,40 @@ fn of_legs(history: &History) -> Result<(), Fault> {
     Ok(())
 }
 
-/// The corners of the path. With `control: arc` the points of the amplitudes are corners too: the loads change their course there,
-/// so that the arc of the leg before does not continue.
-pub(super) fn corners<'a>(
-    history: &History,
-    scales: impl Iterator<Item = &'a Factor> + Clone,
-) -> Vec<f64> {
-    let mut path = history.path.clone();
-    if history.control != Control::Arc {
-        return path;
+/// Rejects an amplitude with a bend within the path of an arc, which follows loads in proportion to the load factor.
+pub(super) fn check_bends(spec: &Spec) -> Result<(), Fault> {
+    let History { path, control, .. } = &spec.history;
+    if *control != Control::Arc {
+        return Ok(());
     }
-    path.truncate(1);
-    for leg in history.path.windows(2) {
-        let (from, to) = (leg[0], leg[1]);
-        let points = scales.clone().flat_map(|scale| &scale.0);
-        let mut bends: Vec<f64> = points
-            .map(|point| point.0)
-            .filter(|at| (from.min(to)..from.max(to)).contains(at) && *at != from)
-            .collect();
-        bends.sort_by(|a, b| (a - from).abs().total_cmp(&(b - from).abs()));
-        bends.dedup();
-        path.extend(bends);
-        path.push(to);
+    let [low, high] = range(path.iter().copied());
+    for (k, load) in spec.loads.iter().enumerate() {
+        let scale = Factor(load.scale().to_vec());
+        let slope = |from: f64, to: f64| (scale.at(to) - scale.at(from)) / (to - from);
+        let mut points = vec![low];
+        points.extend(
+            scale
+                .0
+                .iter()
+                .map(|(at, _)| *at)
+                .filter(|at| (low..high).contains(at)),
+        );
+        points.push(high);
+        points.dedup();
+        let whole = slope(low, high).abs();
+        let bend = points.windows(3).find(|at| {
+            let [before, after] = [slope(at[0], at[1]), slope(at[1], at[2])];
+            (before - after).abs() > SAME * whole.max(before.abs()).max(after.abs())
+        });
+        if let Some(at) = bend {
+            bail!(
+                at!["loads", k, "scale"],
+                "the amplitude bends at the load factor {}, and control: arc needs loads in proportion to it; use control: load",
+                sig4(at[1])
+            );
+        }
     }
-    path
+    Ok(())
 }
 
 /// Number of increments along a path: each leg is divided into increments of its size, plus a shorter last one if needed.

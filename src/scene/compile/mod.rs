@@ -133,13 +133,10 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
     laws::check_corners(spec, &names, &surfaces, &slaves)?;
     interface::check_held_slaves(spec, &names, &dofs, &surfaces, &slaves)?;
     history::history(&spec.history)?;
+    history::check_bends(spec)?;
     let monitors = monitors::monitors(spec, &names, &on_body, &dofs, &slaves)?;
     let arc = arc::arc(spec, &names, &monitors, &slaves)?;
     let settings = history::resolved(&spec.settings, &bodies);
-    let scales = loads.iter().map(|load| &load.scale);
-    let scales = scales.chain(pressures.iter().map(|pressure| &pressure.scale));
-    let scales = scales.chain(prescribed.iter().map(|moved| &moved.scale));
-    let path = history::corners(&spec.history, scales);
     let model = Model {
         title: spec.title.clone(),
         about: spec.about.clone(),
@@ -151,7 +148,7 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
         loads,
         pressures,
         prescribed,
-        path,
+        path: spec.history.path.clone(),
         increment: spec.history.increment,
         increments: spec.history.increments.clone(),
         least: spec.history.least,
