@@ -19,6 +19,7 @@ use stickslip::step::Status;
 pub fn tests() -> Vec<Trial> {
     crate::tests![
         every_quick_scene_writes_the_same_trace_and_table,
+        a_body_that_only_contact_holds_is_attached_with_the_ladder,
         core_export_and_audit_take_an_attached_solver,
         round_off_of_an_end_without_forces_is_no_finding_and_a_pull_is_one,
         sessions_with_interventions_are_the_same_frame_by_frame,
@@ -90,9 +91,16 @@ fn every_quick_scene_writes_the_same_trace_and_table() {
     std::thread::scope(|scope| {
         for part in [half, rest] {
             let folder = folder.path();
-            scope.spawn(move || part.iter().for_each(|name| same_tables(folder, name)));
+            scope.spawn(move || part.iter().for_each(|name| same_tables(folder, name, &[])));
         }
     });
+}
+
+/// Iterations without a solution have no contacts.
+fn a_body_that_only_contact_holds_is_attached_with_the_ladder() {
+    let folder = tempfile::tempdir().unwrap();
+    let ladder = ["--set", "settings.strategy=ladder"];
+    same_tables(folder.path(), "osc-block-free", &ladder);
 }
 
 fn core_export_and_audit_take_an_attached_solver() {
@@ -170,7 +178,7 @@ fn round_off_of_an_end_without_forces_is_no_finding_and_a_pull_is_one() {
 }
 
 /// Runs a scene by itself and attached, and compares the bytes of what is written.
-fn same_tables(folder: &Path, name: &str) {
+fn same_tables(folder: &Path, name: &str, set: &[&str]) {
     let own = [format!("{name}.own.trace"), format!("{name}.own.csv")];
     let attached = [format!("{name}.trace"), format!("{name}.csv")];
     let run = |[trace, csv]: &[String; 2], subject: &[&str]| {
@@ -178,8 +186,11 @@ fn same_tables(folder: &Path, name: &str) {
         let output = program(folder, &arguments).output().unwrap();
         (code(&output), err(&output))
     };
-    let (own_code, own_err) = run(&own, &[name]);
-    let (code, err) = run(&attached, &["--", stickslip(), "serve", name]);
+    let (own_code, own_err) = run(&own, &[&[name], set].concat());
+    let (code, err) = run(
+        &attached,
+        &[&["--", stickslip(), "serve", name], set].concat(),
+    );
     assert_eq!(code, own_code, "{name}: {err}, and by itself {own_err}");
     for (own, attached) in own.iter().zip(&attached) {
         let read = |file: &String| std::fs::read_to_string(folder.join(file)).unwrap();

@@ -9,8 +9,8 @@ use crate::explain::names::{self, mode, position_in, slave};
 use crate::explain::strain;
 use stickslip_core::step::event::SmallerStepReason;
 use stickslip_core::{
-    Decision, Event, Failure, Intervention, Model, MotionEvent, Outcome, Position, Rule, Singular,
-    State, TestedQuantity, counted,
+    Control, Decision, Event, Failure, Intervention, Model, MotionEvent, Outcome, Position, Rule,
+    Singular, State, TestedQuantity, counted,
 };
 use stickslip_scene::{few, first_of, joined, shortest, sig2, sig4, sig6};
 
@@ -453,6 +453,10 @@ pub fn intervention(model: &Model, intervention: &Intervention) -> String {
             )
         }
         Intervention::Release { slave: s } => format!("{} follows Table 2 again", slave(model, *s)),
+        Intervention::Increment(increment) if model.control == Control::Arc => format!(
+            "increment {}; the next step along the arc changes in the same proportion",
+            shortest(*increment)
+        ),
         Intervention::Increment(increment) => {
             format!(
                 "the increment from the last equilibrium has size {}",

@@ -161,7 +161,10 @@ impl WireFrame<'_> {
             return unfit("size: must be positive");
         }
         let count = self.ids.len();
-        let solved = sent.ended != EndedLevel::Failure && sent.ended != EndedLevel::Cut;
+        let solved = matches!(
+            sent.ended,
+            EndedLevel::Equilibrium | EndedLevel::Increment | EndedLevel::Done
+        );
         if sent.contacts.len() != count && (solved || !sent.contacts.is_empty()) {
             return unfit(format!(
                 "it has {}; the scene has {count}",
