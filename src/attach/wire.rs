@@ -58,7 +58,7 @@ pub fn scene(model: &Model) -> Scene {
 fn node(node: &stickslip_core::Node) -> message::NodeMessage {
     message::NodeMessage {
         name: node.name.clone(),
-        at: Some(node.at.into()),
+        at: Some(Components::Two(node.at)),
     }
 }
 
@@ -154,7 +154,7 @@ fn displacements(model: &Model, state: &State) -> Vec<Components> {
                 Some(2..) => state.u.get(model.dofs.first[node] + axis).copied(),
                 _ => None,
             };
-            [dof(0).unwrap_or(0.0), dof(1).unwrap_or(0.0)].into()
+            Components::Two([dof(0).unwrap_or(0.0), dof(1).unwrap_or(0.0)])
         })
         .collect()
 }
@@ -215,9 +215,9 @@ fn of_record(k: usize, record: &ContactRecord) -> ContactResult {
         next: decision.next,
         gap: number(record.gap),
         f_n: number(record.f_n),
-        f_t: number(record.f_t).map(Components::from),
+        f_t: number(record.f_t).map(Components::One),
         limit: number(record.t_max),
-        slip: number(record.slip).map(Components::from),
+        slip: number(record.slip).map(Components::One),
         rule: decision.rule.name().to_owned(),
         margin: None,
         tests: decision.tests.into_iter().flatten().collect(),
@@ -240,7 +240,9 @@ fn of_record(k: usize, record: &ContactRecord) -> ContactResult {
 
 /// Finite coordinates; a contact without a surface has none.
 fn place(at: [f64; 2]) -> Option<Components> {
-    at.iter().all(|x| x.is_finite()).then(|| at.into())
+    at.iter()
+        .all(|x| x.is_finite())
+        .then_some(Components::Two(at))
 }
 
 fn norms(norms: &Norms) -> message::NormsMessage {

@@ -5,7 +5,6 @@ use std::env;
 use std::fmt::Write;
 use std::io::{IsTerminal, stderr, stdin, stdout};
 use std::path::PathBuf;
-use std::process::Command;
 use stickslip_core::linear::estimate;
 use stickslip_debugger::action::config;
 use stickslip_debugger::record::journal;
@@ -20,7 +19,6 @@ pub fn main(verbose: bool) -> Result<Exit, Error> {
         let parts = [
             ("features", features()),
             ("target", target()),
-            ("system", kernel_and_libc()),
             ("machine", origin::machine()),
             ("threads", threads()),
             ("memory", estimate::bytes(memory::free()) + " for scenes"),
@@ -88,23 +86,6 @@ fn target() -> String {
         "{}/{}, {libc}{linked}{kind}",
         env::consts::OS,
         env::consts::ARCH
-    )
-}
-
-/// The kernel, and the system's C library.
-fn kernel_and_libc() -> String {
-    let asked = Command::new("getconf")
-        .arg("GNU_LIBC_VERSION")
-        .output()
-        .ok();
-    let libc = asked
-        .filter(|asked| asked.status.success())
-        .map(|asked| String::from_utf8_lossy(&asked.stdout).trim().to_owned());
-    let libc = libc.filter(|libc| !libc.is_empty());
-    format!(
-        "{}, {}",
-        system::name(),
-        libc.unwrap_or_else(|| "no glibc reported by getconf".into())
     )
 }
 

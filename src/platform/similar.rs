@@ -34,40 +34,31 @@ pub fn did_you_mean_file(missing: &str) -> String {
 /// The common start and end are ignored, so `settings.foo` is not close to `settings.slip`, and `wall.ron` not to `beam.ron`.
 pub fn nearest<'a>(wrong: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let candidates: Vec<&str> = candidates.into_iter().collect();
+    // Longer words are not typos, and the distance costs quadratic time.
+    const LONGEST: usize = 64;
+    let letters = wrong.chars().count();
+    let far = |right: &str| {
+        let (a, b) = (wrong.chars(), right.chars());
+        let start = a.clone().zip(b.clone()).take_while(|(a, b)| a == b);
+        let end = a.rev().zip(b.rev()).take_while(|(a, b)| a == b);
+        let differing = letters.saturating_sub(start.count() + end.count());
+        let most = differing.div_ceil(3).max(1).min(letters.saturating_sub(1));
+        let possible = wrong.len().max(right.len()) <= LONGEST;
+        // Swapping two adjacent characters counts as one change.
+        let far = possible.then(|| osa_distance(wrong, right));
+        far.filter(|far| *far <= most)
+    };
     let mut begun = candidates
         .iter()
         .filter(|right| !wrong.is_empty() && right.starts_with(wrong));
-    let only = begun.next().filter(|_| begun.next().is_none()).copied();
-    // Longer words are not typos, and the distance costs quadratic time.
-    const LONGEST: usize = 64;
-    let wrong: Vec<char> = wrong.chars().take(LONGEST + 1).collect();
-    let far = |right: &str| {
-        let right: Vec<char> = right.chars().take(LONGEST + 1).collect();
-        let same = wrong.iter().zip(&right).take_while(|(a, b)| a == b).count();
-        let (a, b) = (&wrong[same..], &right[same..]);
-        let end = a
-            .iter()
-            .rev()
-            .zip(b.iter().rev())
-            .take_while(|(a, b)| a == b)
-            .count();
-        let (a, b) = (&a[..a.len() - end], &b[..b.len() - end]);
-        let most = a
-            .len()
-            .div_ceil(3)
-            .max(1)
-            .min(wrong.len().saturating_sub(1));
-        let possible = wrong.len().max(right.len()) <= LONGEST && a.len().abs_diff(b.len()) <= most;
-        // Swapping two adjacent characters counts as one change.
-        let far = possible.then(|| osa_distance(&String::from_iter(a), &String::from_iter(b)));
-        far.filter(|far| *far <= most)
-    };
+    let only = begun.next().filter(|_| begun.next().is_none());
     candidates
-        .into_iter()
+        .iter()
         .filter_map(|right| far(right).map(|far| (far, right)))
         .min_by_key(|(far, _)| *far)
         .map(|(_, right)| right)
         .or(only)
+        .copied()
 }
 
 #[cfg(test)]

@@ -89,13 +89,6 @@ pub fn sync_folder(folder: &Path) {
     let _ = File::open(folder).and_then(|folder| folder.sync_all());
 }
 
-/// Name and version of the system.
-pub fn name() -> String {
-    let kernel = rustix::system::uname();
-    let word = |text: &std::ffi::CStr| text.to_string_lossy().into_owned();
-    format!("{} {}", word(kernel.sysname()), word(kernel.release()))
-}
-
 /// Free space of the disk of a folder; `None` if it is not known.
 pub fn free_bytes(folder: &Path) -> Option<f64> {
     let disk = rustix::fs::statvfs(folder).ok()?;

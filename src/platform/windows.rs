@@ -76,14 +76,6 @@ pub fn state_folder() -> Option<PathBuf> {
 /// Does nothing: folders cannot be synced.
 pub fn sync_folder(_: &Path) {}
 
-/// Name and version of the system.
-pub fn name() -> String {
-    let asked = Command::new("cmd").args(["/C", "ver"]).output();
-    asked
-        .map(|asked| String::from_utf8_lossy(&asked.stdout).trim().to_owned())
-        .unwrap_or_else(|_| "Windows".into())
-}
-
 /// `None`: the free space of a folder is not known.
 pub fn free_bytes(_: &Path) -> Option<f64> {
     None

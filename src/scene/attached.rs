@@ -19,7 +19,7 @@ use stickslip_core::{
     Surface,
 };
 use stickslip_exchange::attach::Answer;
-use stickslip_exchange::attach::message::{self, Scene};
+use stickslip_exchange::attach::message::{self, Components, Scene};
 
 /// Maximum number of nodes, and of contacts, in a solver's scene.
 const MOST: usize = 1_000_000;
@@ -184,8 +184,8 @@ fn nodes(scene: &Scene) -> Result<Vec<Node>, Fault> {
         let at = node.at.unwrap_or_else(|| {
             last += step;
             match scene.dimension {
-                3 => [last, 0.0, 0.0].into(),
-                _ => [last, 0.0].into(),
+                3 => Components::Three([last, 0.0, 0.0]),
+                _ => Components::Two([last, 0.0]),
             }
         });
         let all = at.as_slice();

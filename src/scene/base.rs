@@ -1,9 +1,8 @@
 //! A scene that is read once and used with many settings, as in studies.
 //!
-//! Paths are looked up once ([`Base::find`]). If only values change on which no other part of the model depends (friction, loads,
-//! increments, most settings), they are written to a copy of the model; otherwise the scene is compiled again. Both ways give the
-//! same bits as [`Scene::from_text`] with these settings. Errors are reported only by `from_text`: where it would fail, the
-//! functions here return `None`.
+//! If only values change on which no other part of the model depends (friction, loads, increments, most settings), they are written
+//! to a copy of the model; otherwise the scene is compiled again. Both ways give the same bits as [`Scene::from_text`] with these
+//! settings. Errors are reported only by `from_text`: where it would fail, the functions here return `None`.
 
 use super::Scene;
 use super::compile::{Choices, Compiled, Groups, Loads, compile, renewed};
@@ -20,12 +19,11 @@ pub struct Base {
     groups: Option<Groups>,
 }
 
-/// Location of a scalar of a base.
+/// A scalar of a base.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ScalarLocation {
-    in_scene: paths::ScalarPath,
-    /// Location among the choices, if it is one.
-    in_choices: Option<paths::ScalarPath>,
+    path: String,
+    is_choice: bool,
 }
 
 impl Base {
@@ -45,15 +43,10 @@ impl Base {
 
     /// Finds a scalar; `None` if the path does not exist or its text has a different format.
     pub fn find(&self, path: &str) -> Option<ScalarLocation> {
-        let in_scene = paths::find(&self.scene.spec, path)?;
-        if in_scene.at == at!["settings", "memory"] {
-            return None;
-        }
-        let is_choice = Choices::has(&in_scene.at);
-        let in_choices = is_choice.then(|| paths::find(self.choices.spec(), path));
-        Some(ScalarLocation {
-            in_scene,
-            in_choices: in_choices.flatten(),
+        let at = paths::find(&self.scene.spec, path)?;
+        (at != at!["settings", "memory"]).then(|| ScalarLocation {
+            path: path.to_owned(),
+            is_choice: Choices::has(&at),
         })
     }
 
@@ -64,7 +57,7 @@ impl Base {
         }
         let mut spec = self.scene.spec.clone();
         for (place, value) in settings {
-            place.in_scene.set(&mut spec, value)?;
+            paths::set(&mut spec, &place.path, value).ok()?;
         }
         compile(&spec).ok().map(|(model, _)| model)
     }
@@ -88,7 +81,7 @@ impl Base {
     fn chosen(&self, settings: &[(&ScalarLocation, &str)]) -> Option<(Choices, Loads)> {
         let mut choices = self.choices.clone();
         for (place, value) in settings {
-            choices.set(place.in_choices.as_ref()?, value)?;
+            choices.set(place.is_choice.then_some(&place.path)?, value)?;
         }
         let loads = choices.loads(&compiled(&self.scene))?;
         Some((choices, loads))
@@ -114,11 +107,11 @@ impl Method {
         let mut choices = Choices::from_spec(spec);
         for (path, value) in settings {
             let own = choices.spec();
-            let found = paths::find(own, &paths::whole(own, path))?;
-            if !Choices::has_of_method(&found.at) {
+            let path = paths::whole(own, path);
+            if !Choices::has_of_method(&paths::find(own, &path)?) {
                 return None;
             }
-            choices.set(&found, value)?;
+            choices.set(&path, value)?;
             // Each value must be valid independently of later ones.
             if !choices.are_sound() {
                 return None;

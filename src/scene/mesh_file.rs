@@ -4,7 +4,7 @@
 use crate::deck::{self, outline};
 use std::collections::HashMap;
 use std::path::Path;
-use stickslip_exchange::attach::message::{NodeMessage, Scene};
+use stickslip_exchange::attach::message::{Components, NodeMessage, Scene};
 use stickslip_exchange::inp::deck::Faces;
 use stickslip_exchange::mesh::Cell;
 use stickslip_exchange::vtu_reader;
@@ -35,8 +35,8 @@ pub fn insert(scene: &mut Scene) -> Result<(), String> {
     let nodes = mesh.points.iter().enumerate().map(|(k, at)| NodeMessage {
         name: mesh.labels.get(k).map(u64::to_string).unwrap_or_default(),
         at: Some(match scene.dimension {
-            3 => (*at).into(),
-            _ => [at[0], at[1]].into(),
+            3 => Components::Three(*at),
+            _ => Components::Two([at[0], at[1]]),
         }),
     });
     scene.nodes = nodes.chain(scene.nodes.drain(..)).collect();

@@ -6,8 +6,7 @@
 //! belong to ([`Input`]). An incomplete last line was cut off by a kill; it is removed, or ignored if the file
 //! is only read.
 //!
-//! Each line ends with its digest ([`stickslip_exchange::seal`]); a file with a mismatch is refused. Earlier
-//! versions wrote no digests: such lines are read, but not after a line with a digest.
+//! Each line ends with its digest ([`stickslip_exchange::seal`]); a file with a mismatch is refused.
 
 use super::origin;
 use super::run_error::{RunError, error_at};
@@ -19,7 +18,7 @@ use std::fs::TryLockError;
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
-use stickslip_exchange::seal::{Seal, opened as unsealed, sealed};
+use stickslip_exchange::seal::{opened as unsealed, sealed};
 use stickslip_platform::disk::{File, OpenOptions};
 use stickslip_platform::input::{self, Unreadable};
 use stickslip_scene::format::notation;
@@ -78,7 +77,7 @@ pub struct Log {
 /// Contents of a log.
 #[derive(Debug)]
 pub struct Content<T> {
-    /// What the results belong to; empty if the file does not say.
+    /// What the results belong to.
     pub inputs: Vec<Input>,
     /// The results in the order of the file.
     pub results: Vec<(Key, StoredResult<T>)>,
@@ -103,8 +102,6 @@ struct Lines<'a> {
     number: usize,
     /// Length of all complete lines so far, in bytes.
     whole: u64,
-    /// Whether any line had a digest.
-    are_sealed: bool,
 }
 
 impl Lines<'_> {
@@ -160,16 +157,8 @@ impl Lines<'_> {
         }
         // A copy through Windows may end its lines with CRLF.
         bytes.pop_if(|last| *last == b'\r');
-        let mut text =
-            String::from_utf8(bytes).map_err(|_| broken("the line is not valid UTF-8"))?;
-        match unsealed(&text) {
-            Seal::Whole(line) => {
-                text.truncate(line.len());
-                self.are_sealed = true;
-            }
-            Seal::Missing if !self.are_sealed => {}
-            Seal::Broken | Seal::Missing => return Err(broken(CHANGED)),
-        }
+        let text = String::from_utf8(bytes).map_err(|_| broken("the line is not valid UTF-8"))?;
+        let text = unsealed(&text).ok_or_else(|| broken(CHANGED))?.to_owned();
         self.number += 1;
         self.whole += length as u64;
         Ok(Some(text))
@@ -246,7 +235,6 @@ fn content<T: Outcome>(
         most: T::MAX_BYTES,
         number: 0,
         whole: 0,
-        are_sealed: false,
     };
     let mut content = Content {
         inputs: Vec::new(),
@@ -419,31 +407,15 @@ mod tests {
     }
 
     #[test]
-    fn results_without_digests_are_read_only_before_those_with_one() {
-        let directory = tempfile::tempdir().unwrap();
-        let path = directory.path().join("a.log");
-        let of = |key: &str| format!("{}\t[1.0]", Key::from_parts([key]));
-        let old = format!("{}\n{}\n{}\n", head(), of("a"), of("b"));
-        std::fs::write(&path, &old).unwrap();
-        let (log, found) = open(&path).unwrap();
-        assert_eq!(found.results.len(), 2);
-        log.keep(Key::from_parts(["c"]), &vec![2.0]).unwrap();
-        drop(log);
-        let (_, found) = open(&path).unwrap();
-        assert_eq!(found.results.len(), 3);
-        let text = std::fs::read_to_string(&path).unwrap();
-        std::fs::write(&path, text + &of("d") + "\n").unwrap();
-        assert_eq!(refused(&path), (5, CHANGED.to_owned()));
-    }
-
-    #[test]
-    fn non_finite_numbers_are_refused_even_without_a_digest() {
+    fn non_finite_numbers_and_lines_without_a_digest_are_refused() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("a.log");
         for number in ["NaN", "-NaN"] {
             let line = format!("{}\t[1.0,{number}]", Key::from_parts(["a"]));
-            std::fs::write(&path, format!("{}\n{line}\n", head())).unwrap();
+            std::fs::write(&path, format!("{}\n{}\n", head(), sealed(&line))).unwrap();
             assert_eq!(refused(&path), (2, UNSOUND.to_owned()));
+            std::fs::write(&path, format!("{}\n{line}\n", head())).unwrap();
+            assert_eq!(refused(&path), (2, CHANGED.to_owned()));
         }
     }
 

@@ -22,7 +22,7 @@ use std::sync::Arc;
 use stickslip_core::Model;
 use stickslip_core::groups::distinct;
 use stickslip_core::plane::max_abs;
-use stickslip_scene::joined;
+use stickslip_scene::{first_of, joined};
 
 /// Default tolerance: runs whose ends differ by more than this fraction of the largest value are on different
 /// branches.
@@ -308,18 +308,14 @@ impl Map {
         let cells = self.cells.iter().flatten();
         let named = distinct(cells.filter_map(|c| Some(c.reference?.0)));
         const SHOWN: usize = 4;
-        let names = joined(named.iter().take(SHOWN).map(|&k| self.name(k)), "; ");
-        let more = match named.len().saturating_sub(SHOWN) {
-            0 => String::new(),
-            n => format!(" and {n} more (the table has them)"),
-        };
+        let names = first_of(named.iter().map(|&k| self.name(k)), SHOWN, "; ");
         let compared = if names.is_empty() {
             "Nothing was compared: no two runs solve the same problem.".to_owned()
         } else {
             format!(
-                "Ends are compared with those of {}{more}; wrong: a monitor differs by more than {} of the largest value \
+                "Ends are compared with those of {names}; wrong: a monitor differs by more than {} of the largest value \
                  of its kind.",
-                names, self.tolerance
+                self.tolerance
             )
         };
         vec![made, compared, origin::made_by()]

@@ -15,9 +15,7 @@
 //! matching paths to the same value.
 
 use super::builtin;
-use serde::Deserialize;
-use serde::de::{Deserializer, Visitor};
-use std::fmt;
+use serde::{Deserialize, Deserializer};
 use stickslip_scene::format::error::{Fault, Path, at, did_you_mean};
 use stickslip_scene::format::locate::{locate, too_deep};
 use stickslip_scene::format::read::{text, value};
@@ -302,56 +300,36 @@ struct StudyFile {
     y: Option<String>,
 }
 
-/// A value of a setting: a number, a flag or a text, stored as text.
-struct Word(String);
-
-impl<'de> Deserialize<'de> for Word {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Word, D::Error> {
-        deserializer.deserialize_any(WordVisitor)
-    }
+/// A value of a setting.
+#[derive(Deserialize)]
+#[serde(
+    untagged,
+    expecting = "a value must be a number, true, false, or a text in quotes"
+)]
+enum Word {
+    Flag(bool),
+    Natural(u64),
+    Integer(i64),
+    Number(f64),
+    Text(String),
 }
 
-struct WordVisitor;
-
-impl Visitor<'_> for WordVisitor {
-    type Value = Word;
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("a number, true, false, or a text in quotes")
-    }
-
-    fn visit_bool<E>(self, flag: bool) -> Result<Word, E> {
-        Ok(Word(flag.to_string()))
-    }
-
-    fn visit_i64<E>(self, number: i64) -> Result<Word, E> {
-        Ok(Word(number.to_string()))
-    }
-
-    fn visit_u64<E>(self, number: u64) -> Result<Word, E> {
-        Ok(Word(number.to_string()))
-    }
-
-    fn visit_f64<E: serde::de::Error>(self, number: f64) -> Result<Word, E> {
-        if number.is_finite() {
-            Ok(Word(format!("{number:?}")))
-        } else {
-            Err(E::custom("the number must be finite"))
+impl From<Word> for String {
+    /// As typed.
+    fn from(word: Word) -> String {
+        match word {
+            Word::Flag(flag) => flag.to_string(),
+            Word::Natural(number) => number.to_string(),
+            Word::Integer(number) => number.to_string(),
+            Word::Number(number) => format!("{number:?}"),
+            Word::Text(text) => text,
         }
-    }
-
-    fn visit_str<E>(self, text: &str) -> Result<Word, E> {
-        Ok(Word(text.to_owned()))
-    }
-
-    fn visit_unit<E: serde::de::Error>(self) -> Result<Word, E> {
-        Err(E::custom("words need quotes here: \"frozen\""))
     }
 }
 
 impl From<(String, Vec<Word>)> for Vary {
     fn from((path, words): (String, Vec<Word>)) -> Vary {
-        let values = words.into_iter().map(|word| word.0).collect();
+        let values = words.into_iter().map(String::from).collect();
         Vary { path, values }
     }
 }
@@ -360,7 +338,7 @@ impl From<(String, Vec<Word>)> for Vary {
 pub(super) fn pairs<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<(String, String)>, D::Error> {
     Ok(Vec::<(String, Word)>::deserialize(from)?
         .into_iter()
-        .map(|(path, word)| (path, word.0))
+        .map(|(path, word)| (path, word.into()))
         .collect())
 }
 

@@ -183,9 +183,7 @@ impl<T: Outcome> Store<T> {
                 if let Some(path) = path {
                     let input = sweep.input.clone().with(*shard);
                     let (log, content) = Log::open(path, &input)?;
-                    // Earlier revisions wrote logs that several maps share and that do not contain their input.
-                    let is_shared = content.inputs.is_empty() && !content.results.is_empty();
-                    if !is_shared && !content.inputs.contains(&input) {
+                    if !content.inputs.contains(&input) {
                         log.name(&input)?;
                     }
                     store.found = content.results.into_iter().collect();
@@ -203,12 +201,8 @@ impl<T: Outcome> Store<T> {
         let mut places: HashMap<Key, usize> = HashMap::new();
         for (file, path) in paths.iter().enumerate() {
             let content = log::read::<T>(path, &sweep.input)?;
-            let is_shared = content.inputs.is_empty();
             for (key, found) in content.results {
                 let Some(&number) = numbers.get(&key) else {
-                    if is_shared {
-                        continue;
-                    }
                     let message = "none of its results belongs to this sweep";
                     return Err(log::broken(path, (found.line, 1), message));
                 };

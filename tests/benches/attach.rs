@@ -15,8 +15,8 @@ use stickslip::recorded::log::Log;
 use stickslip::session::Session;
 use stickslip::step::Solver;
 use stickslip_exchange::attach::message::{
-    Abilities, Contact, ContactResult, EndedLevel, Friction, Hello, Id, NodeMessage, NormsMessage,
-    Position, Restore, Scene, State, SurfaceMessage,
+    Abilities, Components, Contact, ContactResult, EndedLevel, Friction, Hello, Id, NodeMessage,
+    NormsMessage, Position, Restore, Scene, State, SurfaceMessage,
 };
 use stickslip_exchange::attach::{Answer, PROTOCOLS, Request};
 
@@ -206,12 +206,12 @@ fn hello() -> Hello {
 fn scene(contacts: usize) -> Scene {
     let node = |k: usize| NodeMessage {
         name: format!("node.{k}"),
-        at: Some([k as f64, 0.1].into()),
+        at: Some(Components::Two([k as f64, 0.1])),
     };
     let mut nodes: Vec<NodeMessage> = (0..contacts).map(node).collect();
     let end = |name: &str, x| NodeMessage {
         name: name.into(),
-        at: Some([x, 0.0].into()),
+        at: Some(Components::Two([x, 0.0])),
     };
     nodes.push(end("right", contacts as f64));
     nodes.push(end("left", -1.0));
@@ -263,9 +263,9 @@ fn state(contacts: usize, n: usize) -> State {
         next: mode(k, n + 1),
         gap: Some(number(k, 0.1)),
         f_n: Some(number(k, 0.2)),
-        f_t: Some(number(k, 0.3).into()),
+        f_t: Some(Components::One(number(k, 0.3))),
         limit: Some(number(k, 0.4)),
-        slip: Some(number(k, 0.5).into()),
+        slip: Some(Components::One(number(k, 0.5))),
         rule: "active set".into(),
         margin: Some(number(k, 0.6)),
         tests: Vec::new(),
@@ -299,7 +299,7 @@ fn state(contacts: usize, n: usize) -> State {
         after: None,
         displacements: Some(
             (0..contacts + 2)
-                .map(|k| [number(k, 0.7), number(k, 0.8)].into())
+                .map(|k| Components::Two([number(k, 0.7), number(k, 0.8)]))
                 .collect(),
         ),
         spring: None,

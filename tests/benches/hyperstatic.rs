@@ -69,7 +69,7 @@ fn bench(strategy: &str, which: &[usize], limit: f64) {
     for &k in which {
         let problem = problem(k);
         let set = [("settings.strategy".to_owned(), strategy.to_owned())];
-        let text = problem.write();
+        let text = stickslip_exchange::siconos::write(&problem);
         let scene = Scene::from_text("hyperstatic.dat", &text, &set).expect("a scene");
         let mut stepper = Stepper::new(Arc::new(scene.model));
         let from = Instant::now();

@@ -307,9 +307,9 @@ fn charts_with_little_or_nothing_or_much_in_them_are_drawn() {
 #[test]
 fn study_files_are_read_and_their_errors_have_a_place() {
     let text = "(title: \"T\", about: \"A\", scenes: [\"a\", \"b\"], x: \"u_x\", y: \"minors\",
-        vary: [(\"p\", [0.10, 2, \"w\", true])], set: [(\"q\", -1e-9)])";
+        vary: [(\"p\", [0.10, 2, \"w\", v, true])], set: [(\"q\", -1e-9)])";
     let read = Study::from_text("s.ron", text).unwrap();
-    assert_eq!(read.vary[0].values, ["0.1", "2", "w", "true"]);
+    assert_eq!(read.vary[0].values, ["0.1", "2", "w", "v", "true"]);
     assert_eq!(read.set, [("q".to_owned(), "-1e-9".to_owned())]);
     assert_eq!(read.x, Some(AxisQuantity::Monitor("u_x".into())));
     assert_eq!(read.y, Some(AxisQuantity::Minors));
@@ -322,7 +322,7 @@ fn study_files_are_read_and_their_errors_have_a_place() {
             "number",
         ),
         (
-            "(title: \"T\",\n set: [(\"p\", frozen)])",
+            "(title: \"T\",\n set: [(\"p\", [frozen])])",
             (2, 13),
             "quotes",
         ),

@@ -22,7 +22,7 @@ use stickslip::step::event::{Event, Failure, Outcome};
 use stickslip::step::solver::{Capabilities, Now, RewindSupport, SolverLost};
 use stickslip::step::{Solver, State};
 use stickslip_exchange::attach::message::{
-    Contact, Friction, Id, NodeMessage, Scene, SurfaceMessage,
+    Components, Contact, Friction, Id, NodeMessage, Scene, SurfaceMessage,
 };
 
 /// Nodes, their distances from the floor, the stiffness of every spring, and the loads on a node at the load factor 1.
@@ -178,7 +178,7 @@ impl Solver for Springs {
 fn told() -> Scene {
     let node = |name: String, at: [f64; 2]| NodeMessage {
         name,
-        at: Some(at.into()),
+        at: Some(Components::Two(at)),
     };
     let mut nodes: Vec<NodeMessage> = GAPS
         .iter()

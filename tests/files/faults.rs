@@ -126,7 +126,7 @@ fn each_fault_has_one_message_with_its_place() {
             "[\"beam.edn\"]",
             ":37:23: slaves[0].nodes[0]: no node called \"beam.edn\"; did you mean \"beam.end\"?",
         ),
-        ("[\"beam.end\"]", "[\"beam.9\"]", "the chain has 5 nodes"),
+        ("[\"beam.end\"]", "[\"beam.9\"]", "is a chain of 5 nodes"),
         (
             "[\"beam.end\"]",
             "[\"beam@0.3\"]",
@@ -428,7 +428,7 @@ fn each_fault_of_a_solid_has_one_message_with_its_place() {
         ),
         (
             made("Beam(id: \"k\", along: \"k\", material: \"s\")"),
-            "is a block; name one of its edges, \"k.bottom\"",
+            "is a block; it must be a chain of nodes (chains: \"k.bottom\", ",
         ),
         (
             made("Beam(id: \"k\", along: \"k.left\", material: \"s\")"),

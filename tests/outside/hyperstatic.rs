@@ -4,8 +4,8 @@
 //! With u = W r + q, q = H v for the velocities v of the bodies without contact, there is an answer whatever the friction
 //! (Anitescu and Potra, Nonlinear Dynamics 14, 1997): forces that move nothing take no energy from q.
 
-use stickslip::scene::siconos::Friction2d;
 use stickslip::step::stepper::Stepper;
+use stickslip_exchange::problem::{Local, Matrix};
 
 /// Numbers from 0 to 1, the same every time (Knuth's MMIX generator).
 pub struct Numbers(pub u64);
@@ -29,7 +29,7 @@ const CONTACTS: [usize; 6] = [30, 40, 50, 80, 120, 200];
 
 /// Problem k: friction 0.6 to 2; of three, two have a matrix H without zeros, and one has discs that touch each other and the
 /// ground; M = 1.
-pub fn problem(k: usize) -> Friction2d {
+pub fn problem(k: usize) -> Local {
     let mut numbers = Numbers((k as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ 0x5DEE_CE66);
     for _ in 0..4 {
         numbers.next();
@@ -43,10 +43,9 @@ pub fn problem(k: usize) -> Friction2d {
     let motions = h[0].len();
     let v: Vec<f64> = (0..motions).map(|_| numbers.between(-1.0, 1.0)).collect();
     let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
-    Friction2d {
-        w: h.iter()
-            .map(|a| h.iter().map(|b| product(a, b)).collect())
-            .collect(),
+    let row = |a: &Vec<f64>| h.iter().map(|b| product(a, b)).collect();
+    Local {
+        w: Matrix::from_rows(&h.iter().map(row).collect::<Vec<_>>()),
         q: h.iter().map(|row| product(row, &v)).collect(),
         mu: vec![mu; contacts],
     }
@@ -96,11 +95,12 @@ pub fn forces(stepper: &Stepper) -> Vec<f64> {
 
 /// By how much forces break u = W r + q, 0 <= u_n ⊥ r_n >= 0, |r_t| <= mu r_n, and r_t at that bound against u_t where it
 /// slips: over the largest of q and of r.
-pub fn broken(problem: &Friction2d, r: &[f64]) -> f64 {
+pub fn broken(problem: &Local, r: &[f64]) -> f64 {
     let largest = |values: &[f64]| values.iter().fold(f64::MIN_POSITIVE, |m, x| m.max(x.abs()));
     let (length, force) = (largest(&problem.q), largest(r));
+    let rows = problem.w.dense();
     let motion = |i: usize| {
-        let sum: f64 = problem.w[i].iter().zip(r).map(|(w, r)| w * r).sum();
+        let sum: f64 = rows[i].iter().zip(r).map(|(w, r)| w * r).sum();
         (sum + problem.q[i]) / length
     };
     let worst = problem.mu.iter().enumerate().map(|(k, mu)| {

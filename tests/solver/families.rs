@@ -12,13 +12,15 @@ use stickslip::interface::family::{Family, families};
 use stickslip::interface::problem::InterfaceProblem;
 use stickslip::interface::uniqueness::{Inapplicable, Uniqueness, uniqueness};
 use stickslip::scene::Scene;
-use stickslip::scene::siconos::Friction2d;
 use stickslip::step::stepper::Stepper;
+use stickslip_exchange::problem::{Local, Matrix};
+use stickslip_exchange::siconos::write;
 
 /// A scene of this compliance, these motions without forces, and this friction at all contacts.
 fn scene(w: &[&[f64]], q: &[f64], mu: f64, set: &[(&str, &str)]) -> Scene {
-    let problem = Friction2d {
-        w: w.iter().map(|row| row.to_vec()).collect(),
+    let rows: Vec<Vec<f64>> = w.iter().map(|row| row.to_vec()).collect();
+    let problem = Local {
+        w: Matrix::from_rows(&rows),
         q: q.to_vec(),
         mu: vec![mu; q.len() / 2],
     };
@@ -26,7 +28,7 @@ fn scene(w: &[&[f64]], q: &[f64], mu: f64, set: &[(&str, &str)]) -> Scene {
         .iter()
         .map(|(path, value)| ((*path).to_owned(), (*value).to_owned()))
         .collect();
-    Scene::from_text("given.dat", &problem.write(), &set).unwrap()
+    Scene::from_text("given.dat", &write(&problem), &set).unwrap()
 }
 
 fn frozen(scene: Scene) -> InterfaceProblem {

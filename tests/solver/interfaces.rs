@@ -11,7 +11,7 @@ use stickslip::linear::estimate::GIGABYTE;
 use stickslip::model::Mode;
 use stickslip::scene::Scene;
 use stickslip::scene::problems::market;
-use stickslip::scene::siconos::{Friction2d, read};
+use stickslip::scene::siconos::read;
 use stickslip::scene::solver::any_solver;
 use stickslip_exchange::problem::{Local, Matrix};
 use stickslip_exchange::siconos::write;
@@ -44,10 +44,10 @@ const GLOBAL: &str = "2\n1\n0\n3\n3\n3 3\n2 1 0 1 4 0 0 0 9\n0\n3\n2\n3 2\n1 0 0
 
 #[test]
 fn a_global_problem_is_condensed_to_its_contacts() {
-    let found = read(GLOBAL).unwrap();
+    let found = read(GLOBAL, None).unwrap();
     // The inverse of [[2, 1], [1, 4]] is [[4, -1], [-1, 2]] / 7.
     let wanted = [[4.0 / 7.0, -1.0 / 7.0], [-1.0 / 7.0, 2.0 / 7.0]];
-    for (row, wanted) in found.w.iter().zip(wanted) {
+    for (row, wanted) in found.w.dense().iter().zip(wanted) {
         for (value, wanted) in row.iter().zip(wanted) {
             assert!((value - wanted).abs() < 1e-15, "{found:?}");
         }
@@ -64,36 +64,41 @@ fn what_nothing_holds_cannot_be_condensed_and_is_said_to_be_singular() {
     let error = Scene::from_text("loose.dat", &loose, &[]).unwrap_err();
     assert!(error.to_string().contains("M is singular"), "{error}");
     let twice = GLOBAL.replace("2 1 0 1 4 0 0 0 9", "2 4 0 4 8 0 0 0 9");
-    assert!(read(&twice).unwrap_err().message.contains("M is singular"));
+    assert!(
+        read(&twice, None)
+            .unwrap_err()
+            .message
+            .contains("M is singular")
+    );
 }
 
-fn problem() -> Friction2d {
-    Friction2d {
-        w: vec![
+fn problem() -> Local {
+    Local {
+        w: Matrix::from_rows(&[
             vec![2.0, 0.1 + 0.2, 0.0, 0.25],
             vec![0.3, 3.0, 0.4, 0.0],
             vec![0.0, 0.4, 2.0, 1.0 / 3.0],
             vec![0.25, 0.0, 1.0 / 3.0, 2.0],
-        ],
+        ]),
         q: vec![-1.0, 0.1, -2.0, 0.7],
         mu: vec![0.5, 0.1],
     }
 }
 
 /// The problem in every form, each in a file.
-fn files(folder: &TempDir, problem: &Friction2d) -> Vec<String> {
+fn files(folder: &TempDir, problem: &Local) -> Vec<String> {
     let matrix = folder.path().join("p_W.mtx");
     let parts = market::parts(&matrix).unwrap();
     for (part, text) in parts.iter().zip(market::texts(problem, "of a test")) {
         fs::write(part, text).unwrap();
     }
     let mut files = vec![
-        put(folder, "p.dat", problem.write()),
-        put(folder, "b.dat", in_blocks(&problem.local())),
+        put(folder, "p.dat", write(problem)),
+        put(folder, "b.dat", in_blocks(problem)),
         matrix.display().to_string(),
     ];
     if fclib::ready().is_ok() {
-        let bytes = fclib::write(&problem.local(), "of a test").unwrap();
+        let bytes = fclib::write(problem, "of a test").unwrap();
         files.push(put(folder, "p.h5", bytes));
     }
     files
@@ -125,7 +130,7 @@ proptest! {
         q in prop::collection::vec(-1e9..1e9_f64, 4),
     ) {
         let folder = folder();
-        let files = files(&folder, &Friction2d { w, q, mu: vec![0.1, 0.7] });
+        let files = files(&folder, &Local { w: Matrix::from_rows(&w), q, mu: vec![0.1, 0.7] });
         for file in &files[1..] {
             prop_assert_eq!(bare(file), bare(&files[0]));
         }
@@ -158,7 +163,7 @@ fn a_stiffness_is_marked_by_its_name_and_may_come_with_loads() {
     );
     // The same as the global problem: u = q + K⁻¹ (f + r).
     let run = finished(&open(&matrix));
-    assert_solved(&read(GLOBAL).unwrap(), &run);
+    assert_solved(&read(GLOBAL, None).unwrap(), &run);
 }
 
 #[test]

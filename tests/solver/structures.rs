@@ -8,17 +8,18 @@ use stickslip::contact::table2::Rule;
 use std::sync::Arc;
 use stickslip::model::Strategy;
 use stickslip::scene::Scene;
-use stickslip::scene::siconos::Friction2d;
 use stickslip::step::event::Failure;
 use stickslip::step::stepper::Stepper;
 use stickslip::strategy::{next_rung, rungs};
+use stickslip_exchange::problem::{Local, Matrix};
+use stickslip_exchange::siconos::write;
 
 /// What forces may break at most, relative to the largest motion and force: far above round-off, far below a wrong mode.
 const TOLERANCE: f64 = 1e-9;
 
-fn scene(problem: &Friction2d, strategy: &str) -> Scene {
+fn scene(problem: &Local, strategy: &str) -> Scene {
     let set = [("settings.strategy".to_owned(), strategy.to_owned())];
-    Scene::from_text("hyperstatic.dat", &problem.write(), &set).unwrap()
+    Scene::from_text("hyperstatic.dat", &write(problem), &set).unwrap()
 }
 
 /// The first twelve with 30 to 50 contacts. Gauss-Seidel need not come to an end where friction is strong; what it comes to is
@@ -103,8 +104,12 @@ fn with_many_contacts_sweeps_come_before_what_changes_one_node_at_a_time() {
 #[test]
 fn an_increment_that_scales_with_its_load_is_not_cut() {
     let contacts = 10;
-    let stuck = Friction2d {
-        w: vec![vec![0.0; 2 * contacts]; 2 * contacts],
+    let stuck = Local {
+        w: Matrix {
+            rows: 2 * contacts,
+            columns: 2 * contacts,
+            ..Matrix::default()
+        },
         q: [-1.0, 0.25].repeat(contacts),
         mu: vec![0.5; contacts],
     };

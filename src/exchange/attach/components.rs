@@ -1,88 +1,62 @@
 //! Components of vectors in messages: a number along t in the plane, a list of two or three numbers otherwise.
 
-use serde::de::{self, Deserializer, SeqAccess, Visitor};
-use serde::ser::{Serialize, Serializer};
-use serde::{Deserialize, de::Error as _};
+use serde::de::{self, Deserializer, Error as _, SeqAccess, Visitor};
+use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// One, two or three components; one is a plain number.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Components {
-    count: usize,
-    all: [f64; 3],
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Components {
+    /// A number along t.
+    One(f64),
+    /// Two components.
+    Two([f64; 2]),
+    /// Three components.
+    Three([f64; 3]),
 }
 
 impl Components {
     /// The components.
     pub fn as_slice(&self) -> &[f64] {
-        // The constructors keep the count from 1 to 3.
-        &self.all[..self.count]
+        match self {
+            Components::One(x) => std::slice::from_ref(x),
+            Components::Two(all) => all,
+            Components::Three(all) => all,
+        }
     }
 
     /// The length of the vector.
     pub fn size(&self) -> f64 {
-        match *self.as_slice() {
-            [x] => x.abs(),
-            [x, y] => x.hypot(y),
-            _ => self.all[0].hypot(self.all[1]).hypot(self.all[2]),
+        match *self {
+            Components::One(x) => x.abs(),
+            Components::Two([x, y]) => x.hypot(y),
+            Components::Three([x, y, z]) => x.hypot(y).hypot(z),
         }
     }
 
     /// The only component; `None` if there are several.
     pub fn scalar(&self) -> Option<f64> {
-        match *self.as_slice() {
-            [x] => Some(x),
+        match *self {
+            Components::One(x) => Some(x),
             _ => None,
         }
     }
 
     /// Two components; `None` if there is another number of them.
     pub fn pair(&self) -> Option<[f64; 2]> {
-        self.as_slice().try_into().ok()
+        match *self {
+            Components::Two(pair) => Some(pair),
+            _ => None,
+        }
     }
 
     /// Three components, of which a missing third one is 0.
     pub fn in_space(&self) -> [f64; 3] {
-        self.all
-    }
-
-    fn from_slice(given: &[f64]) -> Option<Components> {
-        let mut all = [0.0; 3];
-        all.get_mut(..given.len())?.copy_from_slice(given);
-        let count = given.len();
-        (count > 0).then_some(Components { count, all })
-    }
-}
-
-impl From<f64> for Components {
-    fn from(x: f64) -> Self {
-        Components {
-            count: 1,
-            all: [x, 0.0, 0.0],
-        }
-    }
-}
-
-impl From<[f64; 2]> for Components {
-    fn from([x, y]: [f64; 2]) -> Self {
-        Components {
-            count: 2,
-            all: [x, y, 0.0],
-        }
-    }
-}
-
-impl From<[f64; 3]> for Components {
-    fn from(all: [f64; 3]) -> Self {
-        Components { count: 3, all }
-    }
-}
-
-impl Serialize for Components {
-    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
-        match self.scalar() {
-            Some(x) => to.serialize_f64(x),
-            None => self.as_slice().serialize(to),
+        match *self {
+            Components::One(x) => [x, 0.0, 0.0],
+            Components::Two([x, y]) => [x, y, 0.0],
+            Components::Three(all) => all,
         }
     }
 }
@@ -103,15 +77,15 @@ impl<'de> Visitor<'de> for ComponentsReader {
     }
 
     fn visit_f64<E: de::Error>(self, x: f64) -> Result<Components, E> {
-        Ok(x.into())
+        Ok(Components::One(x))
     }
 
     fn visit_i64<E: de::Error>(self, x: i64) -> Result<Components, E> {
-        Ok((x as f64).into())
+        Ok(Components::One(x as f64))
     }
 
     fn visit_u64<E: de::Error>(self, x: u64) -> Result<Components, E> {
-        Ok((x as f64).into())
+        Ok(Components::One(x as f64))
     }
 
     fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Components, A::Error> {
@@ -121,9 +95,11 @@ impl<'de> Visitor<'de> for ComponentsReader {
             all[count.min(3)] = x;
             count += 1;
         }
-        let found = (count > 1).then(|| Components::from_slice(&all[..count.min(4)]));
-        found
-            .flatten()
-            .ok_or_else(|| A::Error::invalid_length(count, &self))
+        let [x, y, z, _] = all;
+        match count {
+            2 => Ok(Components::Two([x, y])),
+            3 => Ok(Components::Three([x, y, z])),
+            _ => Err(A::Error::invalid_length(count, &self)),
+        }
     }
 }

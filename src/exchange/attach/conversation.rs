@@ -6,7 +6,7 @@
 //! start with just [`HEAD`] and have no digests.
 
 use crate::FormatError;
-use crate::seal::{self, Seal};
+use crate::seal;
 
 /// Start of the first line.
 pub const HEAD: &str = "# stickslip exchange 1";
@@ -88,12 +88,11 @@ impl TranscriptLine {
             .enumerate()
             .skip(1)
             .map(|(number, line)| {
-                let line = match seal::opened(line) {
-                    _ if !are_sealed => line,
-                    Seal::Whole(line) => line,
-                    Seal::Broken | Seal::Missing => {
-                        return Err(FormatError::at(number + 1, 1, CHANGED));
+                let line = match are_sealed {
+                    true => {
+                        seal::opened(line).ok_or_else(|| FormatError::at(number + 1, 1, CHANGED))?
                     }
+                    false => line,
                 };
                 let (sign, text) = line.split_at_checked(1).unwrap_or((line, ""));
                 let side = Side::ALL

@@ -402,7 +402,10 @@ mod tests {
     }
 
     fn slip(x: Option<f64>, in_space: bool) -> Option<Components> {
-        x.map(|x| if in_space { [x, -x].into() } else { x.into() })
+        x.map(|x| match in_space {
+            true => Components::Two([x, -x]),
+            false => Components::One(x),
+        })
     }
 
     prop_compose! {
@@ -420,7 +423,7 @@ mod tests {
                 next: modes.1,
                 gap: numbers[0],
                 f_n: numbers[1],
-                f_t: numbers[2].map(Components::from),
+                f_t: numbers[2].map(Components::One),
                 limit: numbers[3],
                 slip: slip(numbers[4], in_space),
                 rule,
@@ -430,7 +433,7 @@ mod tests {
                 limit_used: None,
                 drift: None,
                 normal: None,
-                tangent: in_space.then_some([1.0, 0.0, 0.0].into()),
+                tangent: in_space.then_some(Components::Three([1.0, 0.0, 0.0])),
                 foot: None,
                 corner: None,
                 carried: [over, false],

@@ -179,13 +179,13 @@ fn errors_have_a_position() {
             "1 2 2 0 6 10 7 30",
             "1 4 2 0 6 10 7 30 5",
             "13:3",
-            "a 4-node tetrahedron; only plane",
+            "type 4 are solids; only plane",
         ),
         (
             "1 2 2 0 6 10 7 30",
             "1 21 2 0 6 10 7 30 5",
             "13:3",
-            "a 10-node triangle; only first",
+            "type 21 are not supported, only those of first",
         ),
         (
             "1 2 2 0 6 10 7 30",

@@ -8,7 +8,7 @@ use super::linear::free_motions;
 use super::{history, interface};
 use crate::Spec;
 use crate::format::error::{Path, Step};
-use crate::format::paths::ScalarPath;
+use crate::format::paths;
 use crate::format::spec::SlaveSpec;
 use stickslip_core::groups::marked;
 use stickslip_core::{Control, Estimate, Model};
@@ -69,10 +69,11 @@ impl Choices {
         &self.spec
     }
 
-    /// Sets a scalar that was found there; `None` if the value has the wrong kind.
-    pub(crate) fn set(&mut self, found: &ScalarPath, value: &str) -> Option<()> {
-        self.loaded |= key(&found.at, 0) == "loads";
-        found.set(&mut self.spec, value)
+    /// Sets a scalar; `None` if it does not exist there or the value has the wrong kind.
+    pub(crate) fn set(&mut self, path: &str, value: &str) -> Option<()> {
+        let change = paths::set(&mut self.spec, path, value).ok()?;
+        self.loaded |= key(&change.at, 0) == "loads";
+        Some(())
     }
 
     /// Whether the value at a path is a choice.

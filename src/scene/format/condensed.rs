@@ -19,10 +19,13 @@ use super::error::{Fault, Path, Step, at, bail};
 use super::in_space::SpaceSpec;
 use super::notation;
 use super::spec::{BodySpec, History, LoadSpec, Nodes, SlaveSpec, Spec, SurfaceSpec};
-use crate::joined;
-use serde::de::Error;
-use serde::{Deserialize, Deserializer, Serialize};
+use ron::ser::PrettyConfig;
+use ron::value::RawValue;
+use serde::de::Error as _;
+use serde::ser::Error as _;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use stickslip_core::plane::max_abs;
+use stickslip_core::words::is_default;
 use stickslip_core::{Friction, InitialState, Mode, Settings, counted};
 use stickslip_exchange::problem;
 
@@ -47,19 +50,27 @@ pub struct Contact {
     /// Name of the node.
     pub id: String,
     /// Undeformed distance to the master; negative is penetration. Default: 0.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub gap: f64,
     /// Friction of the contact. Default: smooth.
-    #[serde(default)]
+    #[serde(
+        default,
+        skip_serializing_if = "is_default",
+        serialize_with = "changes"
+    )]
     pub friction: Friction,
     /// Load on the node along n and t at load factor 1. Default: none.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub load: [f64; 2],
     /// Mode of the first minor iteration. Default: free.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub start: Mode,
     /// Values from iterations before the first one. Default: nothing.
-    #[serde(default)]
+    #[serde(
+        default,
+        skip_serializing_if = "is_default",
+        serialize_with = "changes"
+    )]
     pub state: InitialState,
 }
 
@@ -70,32 +81,56 @@ pub struct Problem {
     /// One-line title.
     pub title: String,
     /// Description. Default: empty.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "String::is_empty")]
     pub about: String,
     /// Tangential components of each contact: 1, or 2 in space. Default: 1.
-    #[serde(default = "one", deserialize_with = "tangents")]
+    #[serde(
+        default = "one",
+        deserialize_with = "tangents",
+        skip_serializing_if = "is_one"
+    )]
     pub tangents: usize,
     /// The contacts, in the order of the rows and columns of `matrix`.
     pub contacts: Vec<Contact>,
     /// Response of the body that carries the contacts.
     pub matrix: Matrix,
     /// Displacement without contact forces at load factor 1: two components per contact, or an empty list. Default: none.
-    #[serde(default)]
+    #[serde(
+        default,
+        skip_serializing_if = "Vec::is_empty",
+        serialize_with = "on_one_line"
+    )]
     pub free: Vec<f64>,
     /// Spacing of neighbouring contacts: a typical length of gaps and motions, to which length tolerances are relative. Default:
     /// the largest gap or free motion.
-    #[serde(default, deserialize_with = "positive")]
+    #[serde(
+        default,
+        deserialize_with = "positive",
+        skip_serializing_if = "Option::is_none"
+    )]
     pub spacing: Option<f64>,
     /// Path of the load factor. Default: one increment from 0 to 1.
-    #[serde(default)]
+    #[serde(
+        default,
+        skip_serializing_if = "is_default",
+        serialize_with = "on_one_line"
+    )]
     pub history: History,
     /// Options of the method. Default: as for a scene.
-    #[serde(default)]
+    #[serde(
+        default,
+        skip_serializing_if = "is_default",
+        serialize_with = "changes"
+    )]
     pub settings: Settings,
 }
 
 fn one() -> usize {
     1
+}
+
+fn is_one(tangents: &usize) -> bool {
+    *tangents == 1
 }
 
 fn tangents<'de, D: Deserializer<'de>>(reader: D) -> Result<usize, D::Error> {
@@ -326,105 +361,37 @@ impl Problem {
             text += format!("// {line}").trim_end();
             text.push('\n');
         }
-        text += &format!("{HEAD}(\n    title: {},\n", quoted(&self.title));
-        if !self.about.is_empty() {
-            text += &format!("    about: {},\n", quoted(&self.about));
-        }
-        if self.tangents != 1 {
-            text += &format!("    tangents: {},\n", self.tangents);
-        }
-        text += "    contacts: [\n";
-        for contact in &self.contacts {
-            text += &format!("        ({}),\n", contact.fields().join(", "));
-        }
-        text += "    ],\n";
-        let (form, rows) = match &self.matrix {
-            Matrix::Stiffness(rows) => ("Stiffness", lists(rows)),
-            Matrix::Compliance(rows) => ("Compliance", lists(rows)),
-            Matrix::Entries(entries) => (
-                "Entries",
-                entries
-                    .iter()
-                    .copied()
-                    .map(|(i, j, value)| format!("({i}, {j}, {value:?})"))
-                    .collect(),
-            ),
-        };
-        text += &format!("    matrix: {form}([\n");
-        for row in rows {
-            text += &format!("        {row},\n");
-        }
-        text += "    ]),\n";
-        if self.free.iter().any(|&u| u != 0.0) {
-            text += &format!("    free: [{}],\n", list(&self.free));
-        }
-        if let Some(spacing) = self.spacing {
-            text += &format!("    spacing: {spacing:?},\n");
-        }
-        let once = History::default();
-        if self.history != once {
-            let (path, increment) = (list(&self.history.path), self.history.increment);
-            let of_legs = match self.history.increments.as_slice() {
-                [] => String::new(),
-                sizes => format!(", increments: [{}]", list(sizes)),
-            };
-            text += &format!("    history: (path: [{path}], increment: {increment:?}{of_legs}),\n");
-        }
-        let set = differences(&self.settings, &Settings::default());
-        if !set.is_empty() {
-            text += &format!("    settings: ({}),\n", set.join(", "));
-        }
-        text + ")\n"
+        let layout = PrettyConfig::new().new_line("\n").depth_limit(2);
+        text + HEAD + &notation::strict_lines(self, layout).unwrap_or_default() + "\n"
     }
 }
 
-impl Contact {
-    /// The fields that differ from their defaults.
-    fn fields(&self) -> Vec<String> {
-        let mut fields = vec![format!("id: {}", quoted(&self.id))];
-        if self.gap != 0.0 {
-            fields.push(format!("gap: {:?}", self.gap));
-        }
-        let friction = differences(&self.friction, &Friction::default());
-        if !friction.is_empty() {
-            fields.push(format!("friction: ({})", friction.join(", ")));
-        }
-        if self.load.iter().any(|&f| f != 0.0) {
-            fields.push(format!("load: ({})", list(&self.load)));
-        }
-        if let (Some(start), true) = (ron(&self.start), self.start != Mode::default()) {
-            fields.push(format!("start: {start}"));
-        }
-        let state = differences(&self.state, &InitialState::default());
-        if !state.is_empty() {
-            fields.push(format!("state: ({})", state.join(", ")));
-        }
-        fields
-    }
+/// Writes a value on one line.
+fn on_one_line<T: Serialize, S: Serializer>(value: &T, to: S) -> Result<S::Ok, S::Error> {
+    let layout = PrettyConfig::new().depth_limit(0);
+    raw(
+        notation::strict_lines(value, layout).unwrap_or_default(),
+        to,
+    )
 }
 
-/// Each row as a list.
-fn lists(rows: &[Vec<f64>]) -> Vec<String> {
-    rows.iter().map(|row| format!("[{}]", list(row))).collect()
+/// Writes the fields of a flat struct that differ from their defaults, on one line.
+fn changes<T: Serialize + Default, S: Serializer>(value: &T, to: S) -> Result<S::Ok, S::Error> {
+    raw(
+        format!("({})", differences(value, &T::default()).join(", ")),
+        to,
+    )
 }
 
-/// Numbers separated by commas; zero is written without a sign.
-fn list(numbers: &[f64]) -> String {
-    joined(numbers.iter().map(|&x| format!("{:?}", x + 0.0)), ", ")
-}
-
-fn quoted(text: &str) -> String {
-    ron(&text).unwrap_or_default()
-}
-
-fn ron(value: &impl Serialize) -> Option<String> {
-    notation::strict_line(value).ok()
+fn raw<S: Serializer>(text: String, to: S) -> Result<S::Ok, S::Error> {
+    let text = RawValue::from_boxed_ron(text.into());
+    text.map_err(S::Error::custom)?.serialize(to)
 }
 
 /// The fields of a flat struct that differ from those of another, as `name: value`.
 fn differences<T: Serialize>(value: &T, other: &T) -> Vec<String> {
     // Pretty-printing puts each field on its own line.
-    let pretty = || ron::ser::PrettyConfig::new().indentor("").new_line("\n");
+    let pretty = || PrettyConfig::new().indentor("").new_line("\n");
     let lines = |value: &T| notation::strict_lines(value, pretty()).unwrap_or_default();
     let (ours, theirs) = (lines(value), lines(other));
     ours.lines()

@@ -83,43 +83,17 @@ pub fn set(spec: &mut Spec, path: &str, value: &str) -> Result<Override, SetErro
     }
 }
 
-/// Location of a scalar in a scene, found once for many settings of it.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct ScalarPath {
-    /// Its number in the walk. Setting values does not change it, because the list of scalars does not depend on their values.
-    number: usize,
-    /// Path in the scene.
-    pub(crate) at: Path,
-}
-
-/// Finds a scalar; `None` if the path does not exist.
-pub(crate) fn find(spec: &Spec, path: &str) -> Option<ScalarPath> {
+/// Path in the scene of a scalar; `None` if it does not exist.
+pub(crate) fn find(spec: &Spec, path: &str) -> Option<Path> {
     let path = current(path.trim());
-    let (mut number, mut found) = (0, None);
+    let mut found = None;
     // The walk also serves setting, so it needs a mutable scene.
     walk(&mut spec.clone(), &mut |place, _| {
         if found.is_none() && place.is(path) {
-            let at = place.at();
-            found = Some(ScalarPath { number, at });
+            found = Some(place.at());
         }
-        number += 1;
     });
     found
-}
-
-impl ScalarPath {
-    /// Sets the scalar in the scene where it was found, or in one that differs from that only in scalars; `None` if the value has
-    /// the wrong kind.
-    pub(crate) fn set(&self, spec: &mut Spec, value: &str) -> Option<()> {
-        let (mut number, mut done) = (0, None);
-        walk(spec, &mut |_, scalar| {
-            if number == self.number {
-                done = scalar.set(value.trim()).ok();
-            }
-            number += 1;
-        });
-        done
-    }
 }
 
 /// Completes a path without its first or last step if that can be omitted: `increment` for `history.increment`, `t_max` for

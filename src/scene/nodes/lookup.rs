@@ -47,39 +47,27 @@ impl Names {
 
     /// The chain with an id.
     pub(crate) fn chain(&self, id: &str) -> Result<&NameEntry, String> {
-        if let Some(&k) = self.index.get(id) {
-            let entry = &self.entries[k];
-            return match entry.kind {
-                EntryKind::Chain(_) | EntryKind::Edge(_) | EntryKind::Sides(_) => Ok(entry),
-                EntryKind::Given | EntryKind::Part | EntryKind::Set => {
-                    let sides = self
-                        .entries
-                        .iter()
-                        .filter(|e| e.at == entry.at && matches!(e.kind, EntryKind::Sides(_)));
-                    Err(format!(
-                        "{} is {}; it must be a chain, as sides of a given mesh are (sides: {})",
-                        quoted(id),
-                        entry.kind.called(),
-                        some_of(sides.map(|e| e.id.as_str()))
-                    ))
-                }
-                EntryKind::Single => Err(format!(
-                    "{id:?} is a single node; it must be a chain (Line, Arc, Through or Chain, or an edge of a Block)"
-                )),
-                EntryKind::Block(_) => Err(format!(
-                    "{id:?} is a block; name one of its edges, \"{id}.bottom\", \"{id}.right\", \"{id}.top\" or \"{id}.left\""
-                )),
-                EntryKind::Mesh => Err(format!(
-                    "{id:?} is a mesh; name an edge of one of its blocks, e.g. \"{}.bottom\", or define a Chain over several",
-                    self.entries[k]
-                        .parts
-                        .first()
-                        .map_or("block", |&part| &self.entries[part].id)
-                )),
-            };
+        let is_chain =
+            |e: &NameEntry| matches!(e.kind, EntryKind::Sides(_)) || e.kind.per_element().is_some();
+        let chains = self.ids(is_chain);
+        let Some(entry) = self.index.get(id).map(|&k| &self.entries[k]) else {
+            return Err(none_called("chain of nodes", id, "chains", chains));
+        };
+        if is_chain(entry) {
+            return Ok(entry);
         }
-        let chains = self.ids(|kind| kind.per_element().is_some());
-        Err(none_called("chain of nodes", id, "chains", chains))
+        let own: Vec<&str> = self.ids(|e| e.at == entry.at && is_chain(e)).collect();
+        let chains = if own.is_empty() {
+            chains.collect()
+        } else {
+            own
+        };
+        Err(format!(
+            "{} is {}; it must be a chain of nodes (chains: {})",
+            quoted(id),
+            entry.kind.called(),
+            some_of(chains)
+        ))
     }
 
     /// The mesh with an id, of one or several blocks.
@@ -87,9 +75,9 @@ impl Names {
     /// # Errors
     /// A message that lists the existing meshes.
     pub(crate) fn mesh(&self, id: &str) -> Result<Mesh, String> {
-        let meshes = self.ids(|kind| {
+        let meshes = self.ids(|entry| {
             use EntryKind::{Block, Given, Mesh, Part};
-            matches!(kind, Block(_) | Mesh | Given | Part)
+            matches!(entry.kind, Block(_) | Mesh | Given | Part)
         });
         let Some(entry) = self.index.get(id).map(|&k| &self.entries[k]) else {
             return Err(none_called("block", id, "blocks", meshes));
@@ -151,22 +139,22 @@ impl Names {
 
     /// Index of the block with an id among the entries.
     pub(super) fn block(&self, id: &str) -> Result<usize, String> {
-        let is_block = |kind| matches!(kind, EntryKind::Block(_));
+        let is_block = |entry: &NameEntry| matches!(entry.kind, EntryKind::Block(_));
         self.index
             .get(id)
             .copied()
-            .filter(|&k| is_block(self.entries[k].kind))
+            .filter(|&k| is_block(&self.entries[k]))
             .ok_or_else(|| none_called("block", id, "blocks", self.ids(is_block)))
     }
 
-    /// Ids of the entries of some kinds.
+    /// Ids of some of the entries.
     fn ids(
         &self,
-        is_one: impl Fn(EntryKind) -> bool + Clone,
+        is_one: impl Fn(&NameEntry) -> bool + Clone,
     ) -> impl Iterator<Item = &str> + Clone {
         self.entries
             .iter()
-            .filter(move |e| is_one(e.kind))
+            .filter(move |entry| is_one(entry))
             .map(|e| e.id.as_str())
     }
 
@@ -242,12 +230,11 @@ impl Names {
             _ => match selector.parse::<usize>() {
                 Ok(k) if (1..=count).contains(&k) => Ok(Selector::Index(k - 1)),
                 Ok(_) => Err(format!(
-                    "no node called {}: the {} has {}, \"{}.1\" to \"{}.{count}\"",
+                    "no node called {0}: {1:?} is {2} of {3}, \"{1}.1\" to \"{1}.{count}\"",
                     quoted(name),
-                    entry.kind.word(),
-                    counted(count, "node"),
                     entry.id,
-                    entry.id
+                    entry.kind.called(),
+                    counted(count, "node")
                 )),
                 Err(_) => Err(self.unknown(name)),
             },
@@ -298,15 +285,6 @@ impl Names {
 }
 
 impl EntryKind {
-    fn word(self) -> &'static str {
-        match self {
-            EntryKind::Part => "part",
-            EntryKind::Set => "set",
-            EntryKind::Single | EntryKind::Edge(_) => "chain",
-            other => other.called().trim_start_matches("a "),
-        }
-    }
-
     /// Description, after "is".
     fn called(self) -> &'static str {
         match self {
@@ -341,25 +319,15 @@ impl NameEntry {
     /// Error for `name` if one node is needed but this has several.
     fn many(&self, name: &str, count: usize) -> String {
         let id = &self.id;
-        let (what, examples) = match self.kind {
-            EntryKind::Block(_) => (
-                "a block",
-                format!("\"{id}.left.start\" or \"{id}.{}\"", count.min(2)),
-            ),
-            EntryKind::Given => (
-                "a mesh",
-                format!("\"{id}.{}\"", self.labels.first().unwrap_or(&1)),
-            ),
-            EntryKind::Mesh | EntryKind::Part | EntryKind::Set | EntryKind::Sides(None) => {
-                (self.kind.called(), format!("\"{id}.{}\"", count.min(2)))
-            }
-            kind => (
-                kind.called(),
-                format!("\"{id}.start\", \"{id}.end\" or \"{id}.{}\"", count.min(2)),
-            ),
+        let ends = match self.kind {
+            EntryKind::Block(_) => format!("\"{id}.left.start\" or "),
+            kind if kind.per_element().is_some() => format!("\"{id}.start\", \"{id}.end\" or "),
+            _ => String::new(),
         };
+        let number = self.labels.first().copied().unwrap_or(count.min(2));
         format!(
-            "{name:?} is {what} of {}; name one of them, as {examples}",
+            "{name:?} is {} of {}; name one of them, as {ends}\"{id}.{number}\"",
+            self.kind.called(),
             counted(count, "node")
         )
     }

@@ -87,14 +87,9 @@ impl EntryKind {
     /// Nodes per element of a chain.
     fn per_element(self) -> Option<usize> {
         match self {
-            EntryKind::Single
-            | EntryKind::Block(_)
-            | EntryKind::Mesh
-            | EntryKind::Given
-            | EntryKind::Part
-            | EntryKind::Set => None,
             EntryKind::Chain(m) | EntryKind::Edge(m) => Some(m),
             EntryKind::Sides(m) => m,
+            _ => None,
         }
     }
 }

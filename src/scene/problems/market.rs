@@ -22,6 +22,7 @@ use crate::joined;
 use std::path::{Path, PathBuf};
 use stickslip_core::counted;
 use stickslip_exchange::matrix_market;
+use stickslip_exchange::problem::Local;
 use stickslip_platform::input;
 
 /// Files of a problem besides the matrix.
@@ -173,8 +174,7 @@ pub fn parts(file: &Path) -> Result<[PathBuf; 3], String> {
 }
 
 /// The contents of these files.
-pub fn texts(problem: &super::siconos::Friction2d, title: &str) -> [String; 3] {
-    let local = problem.local();
+pub fn texts(local: &Local, title: &str) -> [String; 3] {
     let of_w = "W of u = q + W r; rows along n and t of each contact in turn";
     let column = |numbers: &[f64], what: &str| matrix_market::write_column(numbers, &[what, title]);
     [

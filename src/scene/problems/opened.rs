@@ -43,7 +43,7 @@ pub(crate) fn from_file(
 /// # Errors
 /// If it is invalid.
 pub(crate) fn siconos(name: &str, text: &str, memory: Option<f64>) -> Result<Problem, SceneError> {
-    match siconos::local_within(text, memory, super::blocks_fit) {
+    match siconos::read(text, memory) {
         Ok(local) => {
             let mut problem = siconos::problem(local, &title(name));
             problem.settings.matrix_accuracy = stickslip_exchange::siconos::accuracy(text);

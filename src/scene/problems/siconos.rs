@@ -16,50 +16,19 @@ use stickslip_exchange::FormatError;
 use stickslip_exchange::problem::{self, Local};
 use stickslip_exchange::siconos;
 
-/// A plane friction problem.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Friction2d {
-    /// W, row by row: 2 m rows and columns.
-    pub w: Vec<Vec<f64>>,
-    /// q: 2 m numbers.
-    pub q: Vec<f64>,
-    /// Friction coefficients of the m contacts.
-    pub mu: Vec<f64>,
-}
-
 /// Whether a text could be such a file: it starts with a number, as no scene does.
 pub fn is_one(text: &str) -> bool {
     text.trim_start().starts_with(|c: char| c.is_ascii_digit())
 }
 
-/// Reads such a file and condenses a global problem.
+/// Reads such a file as a problem condensed to its contacts, with a memory limit (GB; `None`: the free memory).
 ///
 /// # Errors
 /// The error and its line.
-pub fn read(text: &str) -> Result<Friction2d, FormatError> {
-    let local = local_within(text, None, super::fits)?;
-    match local.dimension() {
-        2 => Ok(Friction2d::from_local(local)),
-        other => Err(FormatError::at(
-            1,
-            1,
-            format!("the dimension is {other}; it must be 2"),
-        )),
-    }
-}
-
-/// Reads such a file as a problem condensed to its contacts, if `fits` accepts the number of contacts.
-///
-/// # Errors
-/// As [`read`].
-pub(super) fn local_within(
-    text: &str,
-    memory: Option<f64>,
-    fits: fn(usize, Option<f64>) -> Result<(), String>,
-) -> Result<Local, FormatError> {
+pub fn read(text: &str, memory: Option<f64>) -> Result<Local, FormatError> {
     // Checked before anything of that size is read.
     let (contacts, (line, column)) = siconos::contacts(text)?;
-    fits(contacts, memory).map_err(|why| FormatError::at(line, column, why))?;
+    super::blocks_fit(contacts, memory).map_err(|why| FormatError::at(line, column, why))?;
     local(siconos::read(text)?, memory).map_err(FormatError::whole)
 }
 
@@ -147,35 +116,6 @@ pub(super) fn problem(local: Local, title: &str) -> Problem {
             super::compliance(local.w),
             local.q,
         )
-    }
-}
-
-impl Friction2d {
-    fn from_local(local: Local) -> Self {
-        Friction2d {
-            w: local.w.dense(),
-            q: local.q,
-            mu: local.mu,
-        }
-    }
-
-    /// The problem in file format.
-    pub fn local(&self) -> Local {
-        Local {
-            w: problem::Matrix::from_rows(&self.w),
-            q: self.q.clone(),
-            mu: self.mu.clone(),
-        }
-    }
-
-    /// The problem in the format of the scene.
-    pub fn problem(&self, title: &str) -> Problem {
-        problem(self.local(), title)
-    }
-
-    /// The text of the file.
-    pub fn write(&self) -> String {
-        siconos::write(&self.local())
     }
 }
 

@@ -27,10 +27,10 @@ use stickslip_core::{
     Bond, ContactRecord, Cycle, Failure, Forced, InitialState, InterfaceProblem, Mode, Model,
     Outcome, Position, ProblemNode, RunEnd, Settings, Stepper, Trials, Until,
 };
+use stickslip_exchange::problem::{self, Local};
 use stickslip_linalg::DenseFactors;
 use stickslip_scene::format::condensed::{Contact, Matrix, Problem};
 use stickslip_scene::format::read;
-use stickslip_scene::siconos::Friction2d;
 use stickslip_scene::{Scene, joined, limits, shown};
 
 /// Why there is nothing to write.
@@ -253,7 +253,7 @@ fn text(
 ///
 /// # Errors
 /// If it cannot be written: the format supports only a compliance, and no cohesion.
-pub fn siconos(model: &Model, problem: &InterfaceProblem) -> Result<Friction2d, Refusal> {
+pub fn siconos(model: &Model, problem: &InterfaceProblem) -> Result<Local, Refusal> {
     let TotalForceProblem { slaves, w, q } = total(model, problem)?;
     let nodes = || {
         slaves
@@ -267,7 +267,8 @@ pub fn siconos(model: &Model, problem: &InterfaceProblem) -> Result<Friction2d, 
         ));
     }
     let mu = nodes().map(|node| node.friction.coefficient()).collect();
-    Ok(Friction2d { w, q, mu })
+    let w = problem::Matrix::from_rows(&w);
+    Ok(Local { w, q, mu })
 }
 
 /// A problem in the total forces of its nodes: (gap, u) = W f + q, with n and t of each node in turn. u is the

@@ -5,11 +5,11 @@ use super::frozen::{self, Origin};
 use crate::explain::names;
 use crate::refusal::{Refusal, refusal};
 use stickslip_core::Stepper;
-use stickslip_exchange::fclib;
+use stickslip_exchange::problem::Local;
+use stickslip_exchange::{fclib, siconos};
 use stickslip_scene::format::notation;
 use stickslip_scene::problems::market;
 use stickslip_scene::shown as outside;
-use stickslip_scene::siconos::Friction2d;
 use stickslip_scene::{Scene, joined};
 
 /// The scene with all overrides, or its frozen problem if requested.
@@ -31,24 +31,21 @@ pub(super) fn ron(shown: &ExportState, stepper: &mut Stepper) -> Result<Vec<u8>,
 
 /// The frozen problem in Siconos format.
 pub(super) fn dat(shown: &ExportState, stepper: &mut Stepper) -> Result<Vec<u8>, Refusal> {
-    let friction = condensed(shown, stepper)?;
-    Ok(friction.write().into_bytes())
+    Ok(siconos::write(&condensed(shown, stepper)?).into_bytes())
 }
 
 /// The frozen problem as Matrix Market files.
 pub(super) fn mtx(shown: &ExportState, stepper: &mut Stepper) -> Result<Vec<Vec<u8>>, Refusal> {
-    let friction = condensed(shown, stepper)?;
-    let texts = market::texts(&friction, &from(shown));
+    let texts = market::texts(&condensed(shown, stepper)?, &from(shown));
     Ok(texts.map(String::into_bytes).into())
 }
 
 /// The frozen problem in fclib format.
 pub(super) fn h5(shown: &ExportState, stepper: &mut Stepper) -> Result<Vec<u8>, Refusal> {
-    let friction = condensed(shown, stepper)?;
-    fclib::write(&friction.local(), &from(shown)).map_err(Refusal::new)
+    fclib::write(&condensed(shown, stepper)?, &from(shown)).map_err(Refusal::new)
 }
 
-fn condensed(shown: &ExportState, stepper: &mut Stepper) -> Result<Friction2d, Refusal> {
+fn condensed(shown: &ExportState, stepper: &mut Stepper) -> Result<Local, Refusal> {
     let (problem, _) = problem(shown, stepper)?;
     frozen::siconos(&shown.scene.model, &problem)
 }

@@ -69,7 +69,7 @@ pub fn open(run: CalculixRun, deck: Option<Deck>) -> Result<OpenedRun, String> {
     };
     let node = |slave: usize| message::NodeMessage {
         name: run.slave(slave),
-        at: Some([0.0, 0.0].into()),
+        at: Some(message::Components::Two([0.0, 0.0])),
     };
     let scene = message::Scene {
         title: Path::new(&run.name)
