@@ -7,7 +7,6 @@ use crate::explain::influence::{Influence, influences};
 use crate::explain::{names, proven, tested};
 use stickslip_core::interface::census::{self, Census, MOST, MOST_SEARCHED, search};
 use stickslip_core::interface::problem::{Answer, Condition};
-use stickslip_core::model::SlipCount;
 use stickslip_core::strategy::method;
 use stickslip_core::{
     AssumedMode, BoundUpdate, ContactRecord, ContactState, Cycle, InterfaceProblem, Mode, Model,
@@ -48,8 +47,8 @@ pub struct Diagnosis {
     pub census: Option<Census>,
     /// The cause of the cycle.
     pub cause: Cause,
-    /// Changes tried on the problem, and whether the minor iterations then settle.
-    pub ways: Vec<(FrozenChange, bool)>,
+    /// Whether T_max is lagged, and the minor iterations settle with a consistent one.
+    pub lags: bool,
 }
 
 /// One iteration of a cycle.
@@ -91,17 +90,6 @@ pub enum Cause {
     Passed,
     /// Too many nodes for a census.
     Unknown,
-}
-
-/// A change that can be tried on the frozen problem.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum FrozenChange {
-    /// Start from the consistent state with this number in the census.
-    Answer(usize),
-    /// `settings.t_max=consistent`.
-    ConsistentLimit,
-    /// The other value of `settings.slip`, as a word.
-    OtherSlip(&'static str),
 }
 
 impl Diagnosis {
@@ -149,7 +137,10 @@ impl Diagnosis {
         }
         let census = found;
         let cause = cause(problem, &phases, &studied, census.as_ref());
-        let ways = ways(&studied, census.as_ref());
+        let mut consistent = studied.clone();
+        consistent.settings.t_max = BoundUpdate::Consistent;
+        let lags =
+            studied.settings.t_max == BoundUpdate::Lagged && end(&consistent) == Some(Ok(()));
         Some(Diagnosis {
             cycle,
             phases,
@@ -157,7 +148,7 @@ impl Diagnosis {
             problem: studied,
             census,
             cause,
-            ways,
+            lags,
         })
     }
 }
@@ -286,47 +277,6 @@ fn cause(
     }
 }
 
-/// Tries changes on the frozen problem alone.
-fn ways(problem: &InterfaceProblem, census: Option<&Census>) -> Vec<(FrozenChange, bool)> {
-    let settles = |changed: &InterfaceProblem| end(changed) == Some(Ok(()));
-    let mut ways = Vec::new();
-    for number in 0..census.map_or(0, |c| c.answers.len().min(MOST_TOLD)) {
-        if let Some(started) = census.and_then(|census| started(problem, census, number)) {
-            ways.push((FrozenChange::Answer(number), settles(&started)));
-        }
-    }
-    let mut other = problem.clone();
-    if problem.settings.t_max == BoundUpdate::Lagged {
-        other.settings.t_max = BoundUpdate::Consistent;
-        ways.push((FrozenChange::ConsistentLimit, settles(&other)));
-    }
-    let mut other = problem.clone();
-    let (slip, word) = match problem.settings.slip {
-        SlipCount::Increment => (SlipCount::Major, "major"),
-        SlipCount::Major => (SlipCount::Increment, "increment"),
-    };
-    other.settings.slip = slip;
-    ways.push((FrozenChange::OtherSlip(word), settles(&other)));
-    ways
-}
-
-/// The problem with its states set to a consistent state of the census.
-pub fn started(
-    problem: &InterfaceProblem,
-    census: &Census,
-    number: usize,
-) -> Option<InterfaceProblem> {
-    let answer = &census.answers.get(number)?.answer;
-    let mut started = problem.clone();
-    for (node, found) in started.nodes.iter_mut().zip(&answer.nodes) {
-        node.state.mode = found.assumed.mode();
-        node.state.ratio = 0.0;
-        node.state.sign = found.f_t.signum();
-        node.state.t_max = found.limit * node.state.sign;
-    }
-    Some(started)
-}
-
 /// What cycles, in one line.
 pub fn head(model: &Model, problem: &InterfaceProblem, diagnosis: &Diagnosis) -> String {
     let members = diagnosis.cycle.members.iter();
@@ -369,9 +319,6 @@ pub fn words(model: &Model, problem: &InterfaceProblem, diagnosis: &Diagnosis) -
     }
     let rates = proven::cycle_words(problem, &name);
     facts.extend(Fact::all(Part::Rates, rates));
-    let ways = diagnosis.ways.iter();
-    let ways = ways.map(|&(way, settles)| way_words(way, settles));
-    facts.extend(Fact::all(Part::Details, ways));
     facts
 }
 
@@ -446,11 +393,8 @@ fn cause_words<'a>(
 ) -> String {
     let members: Vec<&str> = (0..diagnosis.problem.nodes.len()).map(name).collect();
     let nodes = list(&members);
-    let lags = diagnosis
-        .ways
-        .contains(&(FrozenChange::ConsistentLimit, true));
     match &diagnosis.cause {
-        Cause::NoWayToSliding(_) | Cause::Several | Cause::Passed if lags => format!(
+        Cause::NoWayToSliding(_) | Cause::Several | Cause::Passed if diagnosis.lags => format!(
             "T_max lags by one iteration; with a consistent T_max, Table 2 finds a consistent combination of modes of {nodes}"
         ),
         Cause::NoAnswer if left_out => {
@@ -646,17 +590,4 @@ pub fn condition_words(condition: Condition) -> &'static str {
         Condition::WithinLimit => "friction within its limit",
         Condition::Dissipation => "friction against the slip",
     }
-}
-
-fn way_words(way: FrozenChange, settles: bool) -> String {
-    let ends = match settles {
-        true => "the frozen problem settles",
-        false => "the frozen problem does not settle",
-    };
-    let what = match way {
-        FrozenChange::Answer(k) => format!(":start-from {}", k + 1),
-        FrozenChange::ConsistentLimit => ":set settings.t_max consistent".to_owned(),
-        FrozenChange::OtherSlip(other) => format!(":set settings.slip {other}"),
-    };
-    format!("tried: {what}: {ends}")
 }

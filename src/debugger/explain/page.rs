@@ -554,11 +554,8 @@ impl PageBuilder {
             let part = if explained { Part::Details } else { Part::Why };
             facts.insert(0, Fact::new(part, &found.head));
         }
-        let tries = self.tries();
-        let is_tried = |text: &str| tries.iter().any(|line| line.is_repeated_by(text));
-        facts.retain(|fact| !is_tried(&fact.text));
         DiagnosisPage {
-            tries,
+            tries: self.tries(),
             going_on: going_on.to_owned(),
             ..DiagnosisPage::with_facts(self.what.clone(), facts, found)
         }
