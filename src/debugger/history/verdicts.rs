@@ -179,7 +179,7 @@ fn cycle(frame: &Frame) -> Option<&Cycle> {
 }
 
 /// Whether two cycles have the same period, members and patterns, up to a shift.
-pub(crate) fn is_same_cycle(a: &Cycle, b: &Cycle) -> bool {
+fn is_same_cycle(a: &Cycle, b: &Cycle) -> bool {
     if a.period != b.period || a.members.len() != b.members.len() {
         return false;
     }
