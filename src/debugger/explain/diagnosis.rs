@@ -140,7 +140,7 @@ impl Diagnosis {
         let mut consistent = studied.clone();
         consistent.settings.t_max = BoundUpdate::Consistent;
         let lags =
-            studied.settings.t_max == BoundUpdate::Lagged && end(&consistent) == Some(Ok(()));
+            studied.settings.t_max == BoundUpdate::Lagged && matches!(end(&consistent), Some(Ok(_)));
         Some(Diagnosis {
             cycle,
             phases,
