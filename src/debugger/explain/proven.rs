@@ -7,7 +7,7 @@ use stickslip_core::interface::t_max_iteration::{TMaxIteration, TMaxLimit, spira
 use stickslip_core::interface::uniqueness::{Inapplicable, Uniqueness};
 use stickslip_core::strategy::method;
 use stickslip_core::{InterfaceProblem, counted};
-use stickslip_scene::{joined, sig4};
+use stickslip_scene::{first_of, joined, sig4};
 
 /// Number of minor iterations used to follow T_max.
 const AHEAD: usize = 200;
@@ -73,28 +73,18 @@ pub fn family_words<'a>(
             [one] => format!("state {one} is one of them"),
             many => format!("states {} belong to it", many.join(", ")),
         };
-        let forces = family
-            .ranges
-            .iter()
-            .take(MOST_NAMED)
-            .map(|&(place, ranges)| {
-                let lines: Vec<String> = ["F_n", "F_t"]
-                    .into_iter()
-                    .zip(ranges)
-                    .filter(|(_, [low, high])| low < high)
-                    .map(|(word, [low, high])| format!("{word} {} to {}", end(low), end(high)))
-                    .collect();
-                format!("{} {}", name(place), lines.join(", "))
-            });
-        let forces: Vec<String> = forces.collect();
-        let more = match family.ranges.len().saturating_sub(MOST_NAMED) {
-            0 => String::new(),
-            more => format!("; and {}", counted(more, "more node")),
-        };
+        let forces = family.ranges.iter().map(|&(place, ranges)| {
+            let lines = ["F_n", "F_t"]
+                .into_iter()
+                .zip(ranges)
+                .filter(|(_, [low, high])| low < high)
+                .map(|(word, [low, high])| format!("{word} {} to {}", end(low), end(high)));
+            format!("{} {}", name(place), joined(lines, ", "))
+        });
         format!(
-            "the forces are not unique, with a family of dimension {} for the same motion ({which}): {}{more}",
+            "the forces are not unique, with a family of dimension {} for the same motion ({which}): {}",
             family.dimension,
-            forces.join("; ")
+            first_of(forces, MOST_NAMED, "; ")
         )
     };
     families(problem, census).iter().map(words).collect()
@@ -170,20 +160,10 @@ pub fn cycle_words<'a>(
 
 /// The fixed point of T_max at the first nodes.
 fn fixed_words<'a>(found: &TMaxIteration, name: &impl Fn(usize) -> &'a str) -> Option<String> {
-    let text = joined(
-        found
-            .places
-            .iter()
-            .zip(&found.fixed)
-            .take(MOST_NAMED)
-            .map(|(&place, &t_max)| format!("{} at {}", sig4(t_max), name(place))),
-        ", ",
-    );
-    let more = match found.places.len().saturating_sub(MOST_NAMED) {
-        0 => String::new(),
-        more => format!(", and {}", counted(more, "more node")),
-    };
-    (!text.is_empty()).then(|| format!("  its fixed point: T_max = {text}{more}"))
+    let fixed = found.places.iter().zip(&found.fixed);
+    let fixed = fixed.map(|(&place, &t_max)| format!("{} at {}", sig4(t_max), name(place)));
+    let text = first_of(fixed, MOST_NAMED, ", ");
+    (!text.is_empty()).then(|| format!("  its fixed point: T_max = {text}"))
 }
 
 /// The limit of T_max from a problem's states, and its cause, in words; empty if the minor iterations settle soon.
