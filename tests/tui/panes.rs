@@ -368,7 +368,7 @@ fn branches_are_walked_and_stand_beside_each_other() {
         "{seen}"
     );
     assert!(
-        seen.contains("↺ cycle") && seen.contains("Compared at"),
+        seen.contains("↺ cycle") && seen.contains("Compared: "),
         "{seen}"
     );
     debugger.type_keys("Enter");
