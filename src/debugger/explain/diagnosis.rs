@@ -23,6 +23,8 @@ const BRANCHES: usize = census::BUDGET / 10;
 const AT_FULL: f64 = 20.0;
 /// Maximum number of consistent states listed.
 const MOST_TOLD: usize = 12;
+/// Maximum number of nodes whose numbers are listed for a single consistent state.
+const MOST_NUMBERS: usize = 8;
 /// Maximum number of iterations of a period whose pushes are computed.
 const MOST_PHASES: usize = 12;
 /// Maximum number of pushes listed.
@@ -139,8 +141,8 @@ impl Diagnosis {
         let cause = cause(problem, &phases, &studied, census.as_ref());
         let mut consistent = studied.clone();
         consistent.settings.t_max = BoundUpdate::Consistent;
-        let lags =
-            studied.settings.t_max == BoundUpdate::Lagged && matches!(end(&consistent), Some(Ok(_)));
+        let lags = studied.settings.t_max == BoundUpdate::Lagged
+            && matches!(end(&consistent), Some(Ok(_)));
         Some(Diagnosis {
             cycle,
             phases,
@@ -518,7 +520,7 @@ pub(super) fn census_words<'a>(census: &Census, name: &impl Fn(usize) -> &'a str
     if count > MOST_TOLD {
         lines.push(format!("  and {} more", count - MOST_TOLD));
     }
-    lines.extend(differing(census, name));
+    lines.extend(numbers(census, name));
     if let Some((answer, place, margin)) = &census.nearest {
         lines.push(format!(
             "  nearest: {}, which violates \"{}\" at {} by {}",
@@ -531,30 +533,38 @@ pub(super) fn census_words<'a>(census: &Census, name: &impl Fn(usize) -> &'a str
     lines
 }
 
-/// How several consistent states differ, one line per node.
-fn differing<'a>(census: &Census, name: &impl Fn(usize) -> &'a str) -> Vec<String> {
+/// The numbers of a consistent state at its first nodes; of several, at the nodes in which they differ. One line per node.
+fn numbers<'a>(census: &Census, name: &impl Fn(usize) -> &'a str) -> Vec<String> {
     let all = &census.answers;
-    let [first, _, ..] = all.as_slice() else {
+    let Some(first) = all.first() else {
         return Vec::new();
     };
-    let mut lines = vec!["how they differ:".to_owned()];
-    for place in 0..first.answer.nodes.len() {
-        let of = |number: usize| &all[number].answer.nodes[place];
-        if (1..all.len()).all(|number| of(number).assumed == of(0).assumed) {
-            continue;
-        }
+    let of = |number: usize, place: usize| &all[number].answer.nodes[place];
+    let differs =
+        |&place: &usize| (1..all.len()).any(|k| of(k, place).assumed != of(0, place).assumed);
+    let (heading, most) = match all.len() {
+        1 => ("its forces and motions:", MOST_NUMBERS),
+        _ => ("how they differ:", usize::MAX),
+    };
+    let places = (0..first.answer.nodes.len()).filter(|place| all.len() == 1 || differs(place));
+    let line = |place: usize| {
         let each = (0..all.len().min(MOST_TOLD)).map(|number| {
-            let node = of(number);
+            let node = of(number, place);
             let does = assumed_words(node.assumed);
-            let [gap, f_n, f_t] = [node.gap, node.f_n, node.f_t].map(sig4);
+            let [gap, f_n, f_t, slip] = [node.gap, node.f_n, node.f_t, node.slip].map(sig4);
+            let which = match all.len() {
+                1 => String::new(),
+                _ => format!(" in {}", number + 1),
+            };
             match node.assumed {
-                AssumedMode::Free => format!("{does} in {}, gap {gap}", number + 1),
-                _ => format!("{does} in {}, F_n {f_n}, F_t {f_t}", number + 1),
+                AssumedMode::Free => format!("{does}{which}, gap {gap}"),
+                _ => format!("{does}{which}, F_n {f_n}, F_t {f_t}, slip {slip}"),
             }
         });
-        lines.push(format!("  {}: {}", name(place), joined(each, "; ")));
-    }
-    lines
+        format!("  {}: {}", name(place), joined(each, "; "))
+    };
+    let lines = places.take(most).map(line);
+    std::iter::once(heading.to_owned()).chain(lines).collect()
 }
 
 /// The assumed mode of a node, in words.
