@@ -10,7 +10,7 @@ use super::solver::{SolverArgs, session_of, step_to_end};
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use stickslip_core::{Model, Position, RunEnd, Solver, State, Status, Stepper};
+use stickslip_core::{Model, Position, RunEnd, Solver, State, Stepper};
 use stickslip_debugger::explain::{failures, names, report};
 use stickslip_debugger::record::export::export_state::{ExportState, PicturePart, PictureRequest};
 use stickslip_debugger::record::export::run_history::RunHistory;
@@ -367,17 +367,14 @@ fn state(args: &Args, kind: &ExportKind, interrupt: &Interrupt) -> Result<Vec<Ve
     let mut seen = RunHistory::at_start(&mut stepper, &parts);
     // The scene file itself needs no solve.
     let solves = kind.extension != "ron" || args.frozen;
-    let ended = if solves {
-        drive(&course, args.at, &mut stepper, &mut seen, interrupt)?
-    } else {
-        String::new()
-    };
+    if solves {
+        drive(&course, args.at, &mut stepper, &mut seen, interrupt)?;
+    }
     let event = seen.has_started().then(|| stepper.event().clone());
     let state = stepper.state().clone();
     let at = event.as_ref().map_or(state.next, |event| event.position);
     let origin = origin(&course, at, &state);
     let shown = ExportState {
-        ended,
         frozen: args.frozen,
         ..seen.shown(scene, &origin, (&state, event.as_ref()), &picture)
     };
@@ -397,18 +394,18 @@ fn origin(course: &Course, at: Position, state: &State) -> Origin {
     origin
 }
 
-/// Runs to the requested state; returns the failure that ended the run, if any, or the exit code if there is no such state.
+/// Runs to the requested state; returns the exit code if there is no such state.
 fn drive(
     course: &Course,
     at: Option<RunPosition>,
     stepper: &mut Stepper,
     seen: &mut RunHistory<'_>,
     interrupt: &Interrupt,
-) -> Result<String, Error> {
+) -> Result<(), Error> {
     let (scene, name) = (&course.scene, &course.scene.name);
     if let Some(at) = at {
         return seek(stepper, at, interrupt, &mut |stepper| seen.add(stepper))
-            .map(|_| String::new())
+            .map(drop)
             .map_err(|why| missed(scene, stepper, at, why));
     }
     match course.go(stepper, interrupt, |stepper| seen.add(stepper))? {
@@ -417,11 +414,8 @@ fn drive(
             let words = failures::describe(&scene.model, &failure);
             let at = names::position(stepper.event().position);
             notify(&format!("{name}: {at}: {words}; exporting this state"));
-            Ok(words)
+            Ok(())
         }
-        _ => Ok(match &stepper.state().status {
-            Status::Failed(failure) => failures::describe(&scene.model, failure),
-            _ => String::new(),
-        }),
+        _ => Ok(()),
     }
 }

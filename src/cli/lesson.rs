@@ -10,7 +10,7 @@ use std::sync::Arc;
 use stickslip_core::counted;
 use stickslip_debugger::Lesson;
 use stickslip_debugger::teach::play::play;
-use stickslip_debugger::teach::progress::{self, Progress, ProgressError};
+use stickslip_debugger::teach::progress::{self, Progress};
 use stickslip_debugger::teach::tutor::{Paragraph, paragraphs};
 use stickslip_debugger::teach::{self, hand_in, lesson};
 use stickslip_scene::shown;
@@ -83,10 +83,8 @@ fn write_hand_in(to: &Path, force: bool) -> Result<Exit, Error> {
             own.display()
         ));
     }
-    let name = hand_in::write(&own, to, force).map_err(|error| match error {
-        ProgressError::Unwritten(error) => error.into(),
-        error => Error::usage(error),
-    })?;
+    let own = Progress::read(&own).map_err(Error::usage)?;
+    let name = hand_in::write(own, to, force)?;
     notify(&format!("wrote {}, for {name}", to.display()));
     Ok(Exit::Good)
 }

@@ -190,7 +190,7 @@ impl CommandLine {
                 let keys = keys(entry, context);
                 format!("{} {}   {keys}{}", entry.name, entry.arguments, entry.help)
             }
-            (Command, Some(Err(_))) => choices(self.text(), context),
+            (Command, Some(Err(_))) => self.choices(context),
             (Command, None) => {
                 "name of an action; Tab completes, Up recalls, Esc cancels".into()
             }
@@ -226,6 +226,14 @@ impl CommandLine {
                     names.join(", ")
                 )
             }
+        }
+    }
+
+    /// The actions that start with the typed text.
+    fn choices(&self, context: &Context) -> String {
+        match action::complete(self.text().trim_start(), context) {
+            found if found.is_empty() => "no such action; Esc, then ? lists all".into(),
+            found => joined(found.iter().map(|name| self.displayed(name, context)), "  "),
         }
     }
 
@@ -311,28 +319,6 @@ fn keys(entry: &'static ActionEntry, context: &Context) -> String {
         keys
     } else {
         format!("[{keys}]   ")
-    }
-}
-
-/// The actions that start with the typed text.
-fn choices(text: &str, context: &Context) -> String {
-    match action::complete(text.trim_start(), context) {
-        found if found.is_empty() => "no such action; Esc, then ? lists all".into(),
-        found => {
-            let grey = |name: &String| {
-                context
-                    .entry(name.trim())
-                    .is_ok_and(|entry| entry.offered(context).is_err())
-            };
-            let words = found.iter().map(|name| {
-                if grey(name) {
-                    format!("({})", name.trim())
-                } else {
-                    name.clone()
-                }
-            });
-            joined(words, "  ")
-        }
     }
 }
 

@@ -2,14 +2,13 @@
 
 use crate::app::{App, Effect, PAGE};
 use crate::layout::Pane;
-use crate::panes::diagnosis::choices;
 use crate::screen;
 use crate::view::View;
 use Pane::*;
 use Step::*;
+use stickslip_core::Status;
 use stickslip_debugger::action::{Page, Step};
 use stickslip_debugger::explain::remedy::RemedyInput;
-use stickslip_debugger::explain::try_list::TryOutcome;
 use stickslip_debugger::history::verdicts::{self, summaries};
 use stickslip_debugger::{BranchTarget, Command, DiagnosisPage, RemedyTrial};
 
@@ -82,47 +81,41 @@ impl App {
         None
     }
 
-    /// Enter in the diagnosis: takes the selected line of Try, starts from the selected state, or folds the selected part; runs
-    /// the analysis if there is no result yet.
+    /// Enter in the diagnosis: takes the selected line of Try, or folds the selected part; runs the analysis if there is no result
+    /// yet.
     pub(super) fn take_answer(&mut self, view: Option<&View>) -> Option<Effect> {
         let Some(found) = view.and_then(View::examination) else {
             return self.ask_page(Diagnosis, view);
         };
-        if let Some((part, _)) =
-            found.and_then(|page| page.below.get(self.answer.checked_sub(choices(page))?))
-        {
+        let page = found?;
+        let below = self.answer.checked_sub(page.tries.len());
+        if let Some((part, _)) = below.and_then(|at| page.below.get(at)) {
             match self.folded.iter().position(|folded| folded == part) {
                 Some(at) => drop(self.folded.remove(at)),
                 None => self.folded.push(*part),
             }
             return None;
         }
-        match found.filter(|page| !page.tries.is_empty()) {
-            Some(page) => self.take_try(page, view),
-            None => self.start_from(self.answer, view),
-        }
+        self.take_try(page, view)
     }
 
-    /// Takes the selected line of Try: repeats its trial in a branch, or tries it if the trials were interrupted. Of a finished run
-    /// it copies the lines for the deck.
+    /// Takes the selected line of Try: repeats its trial in a branch, or tries it if the trials were interrupted. Where nothing failed
+    /// it types the line; of a finished run it copies the lines for the deck.
     fn take_try(&mut self, page: &DiagnosisPage, view: Option<&View>) -> Option<Effect> {
-        let line = page.tries.get(self.answer.min(page.tries.len() - 1))?;
+        let last = page.tries.len().checked_sub(1)?;
+        let line = &page.tries[self.answer.min(last)];
         let label = &line.label;
+        let has_failed = matches!(view?.frame().state.status, Status::Failed(_));
         match &line.trial {
-            Some(trial) if !matches!(trial.how, RemedyInput::Restart(_)) => {
-                return follow(self, trial, view);
-            }
-            _ if line.typed.starts_with("--set") && line.outcome != TryOutcome::Untried => {
-                self.complain(format!(
-                    "{label} changes the scene: restart with {}",
-                    line.typed
-                ));
-            }
+            Some(trial) => return follow(self, trial, view),
             _ if view.is_some_and(View::is_finished) => {
                 return self.copy(None, view);
             }
             _ if line.typed.is_empty() => {
                 self.say(format!("{label}: nothing can try this for you"))
+            }
+            _ if !has_failed => {
+                return self.take_line(line.typed.trim_start_matches(':'), view);
             }
             _ if page.is_complete() => {
                 return self.submit(Command::Census(Vec::new()), view);
@@ -143,10 +136,10 @@ impl App {
                     return Some("analyse");
                 };
                 let page = found?;
-                let (choices, all) = (choices(page), choices(page) + page.below.len());
-                match self.answer.min(all.saturating_sub(1)) {
-                    at if at < choices => Some(label),
-                    _ if all > choices => Some("fold"),
+                let (tries, below) = (page.tries.len(), page.below.len());
+                match self.answer.min((tries + below).saturating_sub(1)) {
+                    at if at < tries => Some(label),
+                    _ if below > 0 => Some("fold"),
                     _ => None,
                 }
             }
@@ -205,14 +198,6 @@ impl App {
                 ) });
             return None;
         }
-        if let RemedyInput::Restart(_) = &trial.how {
-            let option = trial.how.typed();
-            self.complain(format!(
-                "{} changes the scene: restart with {option}",
-                trial.label
-            ));
-            return None;
-        }
         follow(self, trial, view)
     }
 
@@ -259,7 +244,7 @@ impl App {
         }
         let answers = view
             .and_then(|view| view.examination()?)
-            .map(|page| choices(page) + page.below.len());
+            .map(|page| page.tries.len() + page.below.len());
         let list = match self.panes.focus {
             Branches => {
                 let count = view.and_then(|view| Some(view.tree?.branches().len()));
@@ -306,10 +291,15 @@ impl App {
     }
 }
 
-/// Repeats a trial in a branch.
+/// Repeats a trial in a branch, if it did not change the scene.
 fn follow(app: &mut App, trial: &RemedyTrial, view: Option<&View>) -> Option<Effect> {
-    app.panes.zoomed = false;
     let (label, steps) = (trial.label.clone(), trial.steps.clone());
+    if let RemedyInput::Restart(_) = &trial.how {
+        let option = trial.how.typed();
+        app.complain(format!("{label} changes the scene: restart with {option}"));
+        return None;
+    }
+    app.panes.zoomed = false;
     app.submit(Command::Follow { label, steps }, view)
 }
 

@@ -3,8 +3,7 @@
 use serde::Serialize;
 use std::ops::ControlFlow;
 use std::sync::Arc;
-use stickslip_core::{Outcome, Status, Until};
-use stickslip_debugger::explain::failures;
+use stickslip_core::Until;
 use stickslip_debugger::record::export::Origin;
 use stickslip_debugger::record::export::export_state::{ExportState, PicturePart, PictureRequest};
 use stickslip_debugger::record::export::picture;
@@ -65,22 +64,13 @@ pub fn pictures(
         }
     });
     let (state, event) = (stepper.state(), stepper.event());
-    let ended = match (&state.status, &event.outcome) {
-        (Status::Failed(failure), _) | (_, Outcome::Failed(failure)) => {
-            failures::describe(&scene.model, failure)
-        }
-        _ => String::new(),
-    };
     let origin = Origin::new(&scene, event.position, event.load_factor);
     let draw = |only| {
         let request = PictureRequest {
             only: Some(only),
             ..PictureRequest::default()
         };
-        let shown = ExportState {
-            ended: ended.clone(),
-            ..history.shown(&scene, &origin, (state, Some(event)), &request)
-        };
+        let shown = history.shown(&scene, &origin, (state, Some(event)), &request);
         let svg = picture::sheet(&shown).and_then(|sheet| sheet.svg());
         svg.map_err(|why| why.to_string())
     };

@@ -1,6 +1,5 @@
 //! What-if branches: nothing done is lost by going back, and how branches end is judged.
 
-use stickslip::history::compare::Sameness;
 use stickslip::history::frame::Frame;
 use stickslip::history::frame::curve;
 use stickslip::history::strip::PointKind;
@@ -306,7 +305,7 @@ fn branches_are_compared_at_their_tips_and_at_the_last_load_that_both_reached() 
     let common = found.common.as_ref().expect("load 0.04");
     assert_eq!(common.each_ref().map(|side| side.load_factor), [0.04, 0.04]);
     assert_eq!(common.each_ref().map(|side| side.cost.increments), [4, 2]);
-    assert_eq!(found.sameness, Some(Sameness::Same));
+    assert_eq!(found.is_same, Some(true));
     let [a, b] = common;
     assert!(a.cost.minors > b.cost.minors && a.cost.majors > b.cost.majors);
     assert!(a.cost.seconds > 0.0 && a.residual < 1e-9);
@@ -321,8 +320,8 @@ fn branches_are_compared_at_their_tips_and_at_the_last_load_that_both_reached() 
     set(&mut session, "friction.angle", "5");
     forward(&mut session, Unit::Increment, 3);
     assert_eq!(
-        session.timeline().compare(0, 2).and_then(|c| c.sameness),
-        Some(Sameness::Different)
+        session.timeline().compare(0, 2).and_then(|c| c.is_same),
+        Some(false)
     );
 }
 
@@ -338,7 +337,7 @@ fn minor_iterations_of_one_major_with_other_forces_are_different_states() {
     let [a, b] = found.common.as_ref().expect("a common place");
     let forces = |side: &stickslip::history::compare::Side| side.nodes[0].forces.expect("solved");
     assert_ne!(forces(a), forces(b));
-    assert_eq!(found.sameness, Some(Sameness::Different));
+    assert_eq!(found.is_same, Some(false));
 }
 
 #[test]

@@ -254,7 +254,7 @@ fn several_consistent_states_are_listed_with_how_they_differ() {
     };
     has("3 combinations of modes of c1, c2 and c3 are consistent");
     has("how they differ:");
-    has("c2: sliding with F_t > 0 in 1, F_n 4, F_t 0; free in 2, gap 8; sliding");
+    has("c2: sliding with F_t > 0 in 1, F_n 4, F_t 0, slip ");
     assert!(
         !lines
             .iter()

@@ -6,7 +6,7 @@ use crate::step::iterate::Iterate;
 use crate::step::major_history::RepeatScales;
 use crate::step::recovery::PATIENCE;
 use crate::{
-    ContactRecord, ContactState, Failure, Friction, MajorCycle, Mode, Norms, Outcome,
+    ContactRecord, ContactState, Failure, Friction, MajorCycle, Mode, Model, Norms, Outcome,
     SearchProgress, Singular, SolveResult, State, Stepper,
 };
 use std::sync::Arc;
@@ -86,7 +86,8 @@ impl Stepper {
         let turned = !at_limit
             && after.correction > STILL
             && differ(&self.event.nodes, &self.now.state.nodes, reported);
-        let unfinished = turned || self.now.state.is_carried(&after) || self.now.lags();
+        let unfinished =
+            turned || self.now.state.is_carried(&after) || lags(&self.now.model, &self.now.state);
         if settled && balanced && !drowned && !unfinished {
             return self.finish(after);
         }
@@ -136,15 +137,6 @@ impl Stepper {
 }
 
 impl Iterate {
-    /// Whether a prescribed displacement is not yet that of the load factor: along an arc, a solution may pass a bend of its
-    /// amplitude.
-    fn lags(&self) -> bool {
-        let (state, model) = (&self.state, &self.model);
-        let lag = |p: &Prescribed| p.value * p.scale.at(state.load_factor) - state.u[p.dof];
-        let mut prescribed = model.prescribed.iter();
-        state.way.is_some() && prescribed.any(|p| lag(p).abs() > NEAR * p.value.abs())
-    }
-
     /// Whether the settings keep old factors where they help: under load control, without damping.
     pub(super) fn keeps_factors(&self) -> bool {
         let state = &self.state;
@@ -321,6 +313,13 @@ impl State {
         self.next.major += 1;
         self.next.minor = 1;
     }
+}
+
+/// Whether a prescribed displacement is not yet that of the load factor: along an arc, a solution may pass a bend of its amplitude.
+fn lags(model: &Model, state: &State) -> bool {
+    let lag = |p: &Prescribed| p.value * p.scale.at(state.load_factor) - state.u[p.dof];
+    let mut prescribed = model.prescribed.iter();
+    state.way.is_some() && prescribed.any(|p| lag(p).abs() > NEAR * p.value.abs())
 }
 
 /// Whether the forces of the last minor iteration, along the directions frozen in it, differ from those of the state by more than

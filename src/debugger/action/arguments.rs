@@ -9,7 +9,10 @@ use super::table::{ActionEntry, Verb};
 use crate::history::breakpoints::Condition;
 use crate::refusal::{Refusal, refusal};
 use crate::{BranchTarget, Command, ExportScope, Watch, WatchQuantity};
+use std::fmt::Display;
+use std::ops::RangeBounds;
 use std::path::PathBuf;
+use std::str::FromStr;
 use stickslip_core::Mode;
 use stickslip_manual as manual;
 use stickslip_scene::joined;
@@ -61,20 +64,12 @@ impl ActionEntry {
             }
             Verb::Increment => Command::Increment(increment(rest)?),
             Verb::Set => self.set(rest, &words, context)?,
-            Verb::SetPath(path) => match words[..] {
-                [value] => Command::Set {
-                    path: path.to_string(),
-                    value: value.into(),
-                },
-                _ => return Err(self.misused()),
+            Verb::SetPath(path) => Command::Set {
+                path: path.to_string(),
+                value: self.only(&words)?.into(),
             },
-            Verb::Goto => match words[..] {
-                [word] => Command::Goto {
-                    step: word
-                        .parse()
-                        .map_err(|_| Refusal::no_value(word, "step number", self.usage()))?,
-                },
-                _ => return Err(self.misused()),
+            Verb::Goto => Command::Goto {
+                step: number(self.only(&words)?, "step number", 0.., self.usage())?,
             },
             Verb::Branch(Some(to)) => Command::Branch(to.clone()),
             Verb::Branch(None) | Verb::Rename | Verb::Unwatch if rest.is_empty() => {
@@ -144,20 +139,9 @@ impl ActionEntry {
                 return ui(Ui::Mouse(on));
             }
             Verb::Magnify => {
-                let number =
-                    |word: &str| word.parse().ok().filter(|x: &f64| (1.0..=1e9).contains(x));
-                return match words[..] {
-                    [] => ui(Ui::Magnify(None)),
-                    [word] => match number(word) {
-                        None => Err(Refusal::no_value(
-                            word,
-                            "factor",
-                            "expected a number from 1 to 1e9",
-                        )),
-                        factor => ui(Ui::Magnify(factor)),
-                    },
-                    _ => Err(self.misused()),
-                };
+                let expected = "expected a number from 1 to 1e9";
+                let factor = |word: &&str| number(word, "factor", 1.0..=1e9, expected);
+                return ui(Ui::Magnify(words.first().map(factor).transpose()?));
             }
             Verb::Chart => return ui(Ui::Chart(chart_of(rest, &words)?)),
             Verb::Lesson if rest.is_empty() => return ask(Question::Lesson),
@@ -172,8 +156,8 @@ impl ActionEntry {
             Verb::Monitor => return ui(Ui::Monitor(Some(monitor(rest, context)?))),
             Verb::Help if rest.is_empty() => return ui(Ui::Help),
             Verb::Help => return ui(Ui::Manual(manual::page(rest)?)),
-            Verb::StartFrom => return ui(Ui::StartFrom(self.number(&words)?)),
-            Verb::Apply => return ui(Ui::Apply(self.number(&words)?)),
+            Verb::StartFrom => return ui(Ui::StartFrom(self.entry(&words)?)),
+            Verb::Apply => return ui(Ui::Apply(self.entry(&words)?)),
             Verb::Do(own) => return ui(own.clone()),
         };
         Ok(Action::Session(command))
@@ -184,36 +168,25 @@ impl ActionEntry {
         Refusal::new(self.usage())
     }
 
+    /// The argument of an action that has one.
+    fn only<'a>(&self, words: &[&'a str]) -> Result<&'a str, Refusal> {
+        words.first().copied().ok_or_else(|| self.misused())
+    }
+
     fn count(&self, words: &[&str]) -> Result<u32, Refusal> {
-        let Some(word) = words.first() else {
-            return Ok(1);
-        };
-        match word.parse() {
-            Ok(count) if count > 0 => Ok(count),
-            _ => Err(Refusal::no_value(word, "count", self.usage())),
-        }
+        number(words.first().unwrap_or(&"1"), "count", 1.., self.usage())
     }
 
     /// An entry of a list, counted from 0.
-    fn number(&self, words: &[&str]) -> Result<usize, Refusal> {
-        let [word] = words[..] else {
-            return Err(self.misused());
-        };
-        match word.parse::<usize>() {
-            Ok(number) if number > 0 => Ok(number - 1),
-            _ => Err(Refusal::no_value(word, "list entry", self.usage())),
-        }
+    fn entry(&self, words: &[&str]) -> Result<usize, Refusal> {
+        number(self.only(words)?, "list entry", 1.., self.usage()).map(|entry: usize| entry - 1)
     }
 
     /// The number of a breakpoint; `None` for all.
     fn number_or_all(&self, words: &[&str]) -> Result<Option<u32>, Refusal> {
-        match words[..] {
-            ["all"] => Ok(None),
-            [word] => match word.parse() {
-                Ok(number) => Ok(Some(number)),
-                Err(_) => Err(Refusal::no_value(word, "breakpoint number", self.usage())),
-            },
-            _ => Err(self.misused()),
+        match self.only(words)? {
+            "all" => Ok(None),
+            word => number(word, "breakpoint number", 0.., self.usage()).map(Some),
         }
     }
 
@@ -303,11 +276,7 @@ fn condition(words: &[&str], context: &Context) -> Result<Condition, Refusal> {
         }
         ("mode" | "leaves", _) => Err(usage("[NODE] [MODE]")),
         ("margin", [.., value]) if rest.len() <= 2 => {
-            let below = value
-                .parse::<f64>()
-                .ok()
-                .filter(|below| below.is_finite())
-                .ok_or_else(|| Refusal::no_value(value, "margin", "expected a number"))?;
+            let below = number(value, "margin", f64::MIN..=f64::MAX, "expected a number")?;
             let node = any_or_exact(rest.get(rest.len().wrapping_sub(2)), context)?;
             Ok(Condition::Margin { node, below })
         }
@@ -367,14 +336,20 @@ pub fn letter(mode: Mode) -> &'static str {
 
 /// Parses an increment size.
 pub fn increment(word: &str) -> Result<f64, Refusal> {
-    match word.trim().parse::<f64>() {
-        Ok(size) if size.is_finite() && size > 0.0 => Ok(size),
-        _ => Err(Refusal::no_value(
-            word.trim(),
-            "increment",
-            "expected a positive number such as 0.005",
-        )),
-    }
+    let expected = "expected a positive number such as 0.005";
+    let positive = f64::MIN_POSITIVE..=f64::MAX;
+    number(word.trim(), "increment", positive, expected)
+}
+
+/// Parses a number within limits.
+fn number<T: FromStr + PartialOrd>(
+    word: &str,
+    kind: &str,
+    limits: impl RangeBounds<T>,
+    expected: impl Display,
+) -> Result<T, Refusal> {
+    let number = word.parse().ok().filter(|number| limits.contains(number));
+    number.ok_or_else(|| Refusal::no_value(word, kind, expected))
 }
 
 /// Parses a file, or settings with their values; nothing means the scene's own chart.

@@ -6,7 +6,7 @@
 use stickslip_core::interface::minor_history::MinorHistory;
 use stickslip_core::interface::t_max_iteration::{TMaxLimit, spiral};
 use stickslip_core::strategy::method;
-use stickslip_core::{ContactState, Cycle, InterfaceProblem, Mode, Trials};
+use stickslip_core::{ContactRecord, ContactState, Cycle, InterfaceProblem, Mode, Trials};
 
 /// Up to this number of members, all subsets are tried, smallest first; beyond it, each member is dropped once,
 /// if possible.
@@ -134,17 +134,17 @@ pub fn cycle(problem: &InterfaceProblem) -> Option<Cycle> {
     end(problem)?.err()
 }
 
-/// How the minor iterations of a frozen problem end: they settle, or run into a cycle. `None` if they cannot be solved, or reach
-/// the limit of the settings first.
-pub(super) fn end(problem: &InterfaceProblem) -> Option<Result<(), Cycle>> {
+/// How the minor iterations of a frozen problem end: they settle, with the records of the last one, or run into a cycle. `None` if
+/// they cannot be solved, or reach the limit of the settings first.
+pub(super) fn end(problem: &InterfaceProblem) -> Option<Result<Vec<ContactRecord>, Cycle>> {
     let mut nodes = problem.states();
     let mut trials = Trials::new(problem)?;
     let mut trail = MinorHistory::default();
     for minor in 1..=problem.settings.minors {
         trail.push(&nodes);
-        let (_, settled) = trials.minor(&mut nodes, method(problem.settings.strategy))?;
+        let (records, settled) = trials.minor(&mut nodes, method(problem.settings.strategy))?;
         if settled {
-            return Some(Ok(()));
+            return Some(Ok(records));
         }
         if let Some(cycle) = trail.cycle(
             &nodes,

@@ -7,7 +7,6 @@ use crate::explain::influence::{Influence, influences};
 use crate::explain::{names, proven, tested};
 use stickslip_core::interface::census::{self, Census, MOST, MOST_SEARCHED, search};
 use stickslip_core::interface::problem::{Answer, Condition};
-use stickslip_core::model::SlipCount;
 use stickslip_core::strategy::method;
 use stickslip_core::{
     AssumedMode, BoundUpdate, ContactRecord, ContactState, Cycle, InterfaceProblem, Mode, Model,
@@ -24,6 +23,8 @@ const BRANCHES: usize = census::BUDGET / 10;
 const AT_FULL: f64 = 20.0;
 /// Maximum number of consistent states listed.
 const MOST_TOLD: usize = 12;
+/// Maximum number of nodes whose numbers are listed for a single consistent state.
+const MOST_NUMBERS: usize = 8;
 /// Maximum number of iterations of a period whose pushes are computed.
 const MOST_PHASES: usize = 12;
 /// Maximum number of pushes listed.
@@ -48,8 +49,8 @@ pub struct Diagnosis {
     pub census: Option<Census>,
     /// The cause of the cycle.
     pub cause: Cause,
-    /// Changes tried on the problem, and whether the minor iterations then settle.
-    pub ways: Vec<(FrozenChange, bool)>,
+    /// Whether T_max is lagged, and the minor iterations settle with a consistent one.
+    pub lags: bool,
 }
 
 /// One iteration of a cycle.
@@ -91,17 +92,6 @@ pub enum Cause {
     Passed,
     /// Too many nodes for a census.
     Unknown,
-}
-
-/// A change that can be tried on the frozen problem.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum FrozenChange {
-    /// Start from the consistent state with this number in the census.
-    Answer(usize),
-    /// `settings.t_max=consistent`.
-    ConsistentLimit,
-    /// The other value of `settings.slip`, as a word.
-    OtherSlip(&'static str),
 }
 
 impl Diagnosis {
@@ -149,7 +139,10 @@ impl Diagnosis {
         }
         let census = found;
         let cause = cause(problem, &phases, &studied, census.as_ref());
-        let ways = ways(&studied, census.as_ref());
+        let mut consistent = studied.clone();
+        consistent.settings.t_max = BoundUpdate::Consistent;
+        let lags = studied.settings.t_max == BoundUpdate::Lagged
+            && matches!(end(&consistent), Some(Ok(_)));
         Some(Diagnosis {
             cycle,
             phases,
@@ -157,7 +150,7 @@ impl Diagnosis {
             problem: studied,
             census,
             cause,
-            ways,
+            lags,
         })
     }
 }
@@ -286,47 +279,6 @@ fn cause(
     }
 }
 
-/// Tries changes on the frozen problem alone.
-fn ways(problem: &InterfaceProblem, census: Option<&Census>) -> Vec<(FrozenChange, bool)> {
-    let settles = |changed: &InterfaceProblem| end(changed) == Some(Ok(()));
-    let mut ways = Vec::new();
-    for number in 0..census.map_or(0, |c| c.answers.len().min(MOST_TOLD)) {
-        if let Some(started) = census.and_then(|census| started(problem, census, number)) {
-            ways.push((FrozenChange::Answer(number), settles(&started)));
-        }
-    }
-    let mut other = problem.clone();
-    if problem.settings.t_max == BoundUpdate::Lagged {
-        other.settings.t_max = BoundUpdate::Consistent;
-        ways.push((FrozenChange::ConsistentLimit, settles(&other)));
-    }
-    let mut other = problem.clone();
-    let (slip, word) = match problem.settings.slip {
-        SlipCount::Increment => (SlipCount::Major, "major"),
-        SlipCount::Major => (SlipCount::Increment, "increment"),
-    };
-    other.settings.slip = slip;
-    ways.push((FrozenChange::OtherSlip(word), settles(&other)));
-    ways
-}
-
-/// The problem with its states set to a consistent state of the census.
-pub fn started(
-    problem: &InterfaceProblem,
-    census: &Census,
-    number: usize,
-) -> Option<InterfaceProblem> {
-    let answer = &census.answers.get(number)?.answer;
-    let mut started = problem.clone();
-    for (node, found) in started.nodes.iter_mut().zip(&answer.nodes) {
-        node.state.mode = found.assumed.mode();
-        node.state.ratio = 0.0;
-        node.state.sign = found.f_t.signum();
-        node.state.t_max = found.limit * node.state.sign;
-    }
-    Some(started)
-}
-
 /// What cycles, in one line.
 pub fn head(model: &Model, problem: &InterfaceProblem, diagnosis: &Diagnosis) -> String {
     let members = diagnosis.cycle.members.iter();
@@ -369,9 +321,6 @@ pub fn words(model: &Model, problem: &InterfaceProblem, diagnosis: &Diagnosis) -
     }
     let rates = proven::cycle_words(problem, &name);
     facts.extend(Fact::all(Part::Rates, rates));
-    let ways = diagnosis.ways.iter();
-    let ways = ways.map(|&(way, settles)| way_words(way, settles));
-    facts.extend(Fact::all(Part::Details, ways));
     facts
 }
 
@@ -446,11 +395,8 @@ fn cause_words<'a>(
 ) -> String {
     let members: Vec<&str> = (0..diagnosis.problem.nodes.len()).map(name).collect();
     let nodes = list(&members);
-    let lags = diagnosis
-        .ways
-        .contains(&(FrozenChange::ConsistentLimit, true));
     match &diagnosis.cause {
-        Cause::NoWayToSliding(_) | Cause::Several | Cause::Passed if lags => format!(
+        Cause::NoWayToSliding(_) | Cause::Several | Cause::Passed if diagnosis.lags => format!(
             "T_max lags by one iteration; with a consistent T_max, Table 2 finds a consistent combination of modes of {nodes}"
         ),
         Cause::NoAnswer if left_out => {
@@ -574,7 +520,7 @@ pub(super) fn census_words<'a>(census: &Census, name: &impl Fn(usize) -> &'a str
     if count > MOST_TOLD {
         lines.push(format!("  and {} more", count - MOST_TOLD));
     }
-    lines.extend(differing(census, name));
+    lines.extend(numbers(census, name));
     if let Some((answer, place, margin)) = &census.nearest {
         lines.push(format!(
             "  nearest: {}, which violates \"{}\" at {} by {}",
@@ -587,30 +533,38 @@ pub(super) fn census_words<'a>(census: &Census, name: &impl Fn(usize) -> &'a str
     lines
 }
 
-/// How several consistent states differ, one line per node.
-fn differing<'a>(census: &Census, name: &impl Fn(usize) -> &'a str) -> Vec<String> {
+/// The numbers of a consistent state at its first nodes; of several, at the nodes in which they differ. One line per node.
+fn numbers<'a>(census: &Census, name: &impl Fn(usize) -> &'a str) -> Vec<String> {
     let all = &census.answers;
-    let [first, _, ..] = all.as_slice() else {
+    let Some(first) = all.first() else {
         return Vec::new();
     };
-    let mut lines = vec!["how they differ:".to_owned()];
-    for place in 0..first.answer.nodes.len() {
-        let of = |number: usize| &all[number].answer.nodes[place];
-        if (1..all.len()).all(|number| of(number).assumed == of(0).assumed) {
-            continue;
-        }
+    let of = |number: usize, place: usize| &all[number].answer.nodes[place];
+    let differs =
+        |&place: &usize| (1..all.len()).any(|k| of(k, place).assumed != of(0, place).assumed);
+    let (heading, most) = match all.len() {
+        1 => ("its forces and motions:", MOST_NUMBERS),
+        _ => ("how they differ:", usize::MAX),
+    };
+    let places = (0..first.answer.nodes.len()).filter(|place| all.len() == 1 || differs(place));
+    let line = |place: usize| {
         let each = (0..all.len().min(MOST_TOLD)).map(|number| {
-            let node = of(number);
+            let node = of(number, place);
             let does = assumed_words(node.assumed);
-            let [gap, f_n, f_t] = [node.gap, node.f_n, node.f_t].map(sig4);
+            let [gap, f_n, f_t, slip] = [node.gap, node.f_n, node.f_t, node.slip].map(sig4);
+            let which = match all.len() {
+                1 => String::new(),
+                _ => format!(" in {}", number + 1),
+            };
             match node.assumed {
-                AssumedMode::Free => format!("{does} in {}, gap {gap}", number + 1),
-                _ => format!("{does} in {}, F_n {f_n}, F_t {f_t}", number + 1),
+                AssumedMode::Free => format!("{does}{which}, gap {gap}"),
+                _ => format!("{does}{which}, F_n {f_n}, F_t {f_t}, slip {slip}"),
             }
         });
-        lines.push(format!("  {}: {}", name(place), joined(each, "; ")));
-    }
-    lines
+        format!("  {}: {}", name(place), joined(each, "; "))
+    };
+    let lines = places.take(most).map(line);
+    std::iter::once(heading.to_owned()).chain(lines).collect()
 }
 
 /// The assumed mode of a node, in words.
@@ -646,17 +600,4 @@ pub fn condition_words(condition: Condition) -> &'static str {
         Condition::WithinLimit => "friction within its limit",
         Condition::Dissipation => "friction against the slip",
     }
-}
-
-fn way_words(way: FrozenChange, settles: bool) -> String {
-    let ends = match settles {
-        true => "the frozen problem settles",
-        false => "the frozen problem does not settle",
-    };
-    let what = match way {
-        FrozenChange::Answer(k) => format!(":start-from {}", k + 1),
-        FrozenChange::ConsistentLimit => ":set settings.t_max consistent".to_owned(),
-        FrozenChange::OtherSlip(other) => format!(":set settings.slip {other}"),
-    };
-    format!("tried: {what}: {ends}")
 }

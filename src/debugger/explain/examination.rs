@@ -2,7 +2,7 @@
 //! census of its consistent states.
 
 use super::core::cycle;
-use super::diagnosis::{self, Cause, Diagnosis, MOST_NODES, cycling, started, too_many};
+use super::diagnosis::{self, Cause, Diagnosis, MOST_NODES, cycling, too_many};
 use super::facts::{Fact, Part};
 use super::names;
 use super::proven;
@@ -42,18 +42,14 @@ pub struct Examination {
 impl Examination {
     /// The initial modes for a consistent state of the census; `None` if it does not exist.
     pub fn starts(&self, number: usize) -> Option<Vec<Start>> {
-        let started = started(self.problem.as_ref()?, self.census.as_ref()?, number)?;
-        Some(
-            started
-                .nodes
-                .iter()
-                .map(|node| Start {
-                    slave: node.slave,
-                    mode: node.state.mode,
-                    t_max: node.state.t_max,
-                })
-                .collect(),
-        )
+        let found = self.census.as_ref()?.answers.get(number)?;
+        let nodes = self.problem.as_ref()?.nodes.iter();
+        let starts = nodes.zip(&found.answer.nodes).map(|(node, found)| Start {
+            slave: node.slave,
+            mode: found.assumed.mode(),
+            t_max: found.limit * found.f_t.signum(),
+        });
+        Some(starts.collect())
     }
 }
 

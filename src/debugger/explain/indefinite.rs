@@ -1,24 +1,22 @@
 //! Analyses a frozen problem without a solution: whether its compliance is indefinite only by rounding, and
 //! whether it can be solved without that.
 //!
-//! Small negative eigenvalues are set to zero, and the problem is solved again with all strategies of the
-//! ladder. The solution is checked with the original matrix.
+//! Small negative eigenvalues are set to zero, and the problem is solved again by minor iterations, by pivoting or by a census. The
+//! solution is checked with the original matrix.
 
+use super::core::end;
 use super::diagnosis::{condition_words, modes_words};
 use stickslip_core::interface::census::search;
 use stickslip_core::interface::definite::Compliance;
 use stickslip_core::interface::pivoting::{CoulombForm, PathEnd, Pivoting};
 use stickslip_core::interface::problem::Answer;
-use stickslip_core::strategy::{in_force, method, rungs};
-use stickslip_core::{AssumedMode, InterfaceProblem, Strategy, Trials};
+use stickslip_core::{AssumedMode, BoundUpdate, InterfaceProblem, Strategy, Trials};
 use stickslip_scene::sig4;
 
 /// Negative eigenvalues up to this fraction of the largest one may be due to rounding.
 const SMALL: f64 = 1e-2;
 /// Maximum number of nodes of a problem.
 const MOST: usize = 100;
-/// Maximum number of minor iterations per strategy.
-const MINORS: u32 = 400;
 /// Maximum number of branches in the search for a state.
 const BRANCHES: usize = 1000;
 /// Relative violation of a condition below which it is satisfied.
@@ -42,14 +40,14 @@ pub struct Indefinite {
 pub enum IndefiniteOutcome {
     /// Too large to be due to rounding.
     NotByRounding,
-    /// The problem is solved all the same, by this strategy of the ladder.
+    /// The problem is solved all the same, by this strategy.
     SolvedAsItIs(Strategy),
     /// The problem is not solved; results of the trials.
     Tried {
         /// The solution after the problem is made semidefinite.
         semidefinite: Option<ConsistentState>,
         /// The smallest tolerance tried (`settings.tolerance`) with which the original problem is solved.
-        tolerance: Option<(f64, ConsistentState)>,
+        tolerance: Option<(f64, (Strategy, Answer))>,
     },
 }
 
@@ -103,14 +101,7 @@ pub fn indefinite(problem: &InterfaceProblem, stop: &dyn Fn() -> bool) -> Option
         let mut coarse = problem.clone();
         let tolerance = 10_f64.powi(power);
         coarse.settings.tolerance = tolerance;
-        let (by, answer) = solved(&coarse, tolerance, stop)?;
-        let as_given = Some(answer.clone());
-        let solved = ConsistentState {
-            by,
-            answer,
-            as_given,
-        };
-        Some((tolerance, solved))
+        Some((tolerance, solved(&coarse, tolerance, stop)?))
     });
     ended(IndefiniteOutcome::Tried {
         semidefinite,
@@ -124,59 +115,42 @@ fn as_given(problem: &InterfaceProblem, answer: &Answer) -> Option<Answer> {
     Trials::new(problem)?.answer(&assumed)
 }
 
-/// A state that satisfies all conditions up to a tolerance, and the strategy of the ladder that finds it.
+/// A state that satisfies all conditions up to a tolerance, and the strategy that finds it.
 fn solved(
     problem: &InterfaceProblem,
     tolerance: f64,
     stop: &dyn Fn() -> bool,
 ) -> Option<(Strategy, Answer)> {
-    let mut of_ladder = problem.clone();
-    of_ladder.settings.strategy = Strategy::Ladder;
-    rungs(Strategy::Ladder)
-        .iter()
-        .enumerate()
-        .find_map(|(rung, &strategy)| {
-            if stop() {
-                return None;
-            }
-            let mut problem = of_ladder.clone();
-            problem.settings = in_force(&of_ladder.settings, rung, problem.nodes.len());
-            let found = match strategy {
-                // The result of these strategies is in the run's messages; here the forces have to be unique.
-                Strategy::Copositive | Strategy::GaussSeidel => return None,
-                Strategy::Lemke => by_pivoting(&problem, tolerance),
-                Strategy::Census => {
-                    let found = search(&problem, BRANCHES, stop).ok()?;
-                    found.answers.into_iter().next().map(|state| state.answer)
-                }
-                _ => by_iterations(&problem),
-            };
-            found
-                .filter(|answer| answer.obeys(tolerance))
-                .map(|answer| (strategy, answer))
-        })
+    let by_census = || {
+        let found = search(problem, BRANCHES, stop).ok()?;
+        Some(found.answers.into_iter().next()?.answer)
+    };
+    let ways: [(Strategy, &dyn Fn() -> Option<Answer>); 3] = [
+        (Strategy::Sliding, &|| by_iterations(problem)),
+        (Strategy::Lemke, &|| by_pivoting(problem, tolerance)),
+        (Strategy::Census, &by_census),
+    ];
+    ways.into_iter().find_map(|(strategy, find)| {
+        let found = find().filter(|answer| answer.obeys(tolerance))?;
+        Some((strategy, found))
+    })
 }
 
 /// The state at which the minor iterations settle.
 fn by_iterations(problem: &InterfaceProblem) -> Option<Answer> {
-    let mut nodes = problem.states();
-    let mut trials = Trials::new(problem)?;
-    let method = method(problem.settings.strategy);
-    for _ in 0..problem.settings.minors.min(MINORS) {
-        let (records, settled) = trials.minor(&mut nodes, method)?;
-        if settled {
-            let of = records.iter().zip(&problem.nodes).map(|(record, node)| {
-                let assumed = AssumedMode::from_mode(record.decision.next, record.t_max_used);
-                if node.choices().contains(&assumed) {
-                    assumed
-                } else {
-                    AssumedMode::from_mode(record.decision.next, 1.0)
-                }
-            });
-            return trials.answer(&of.collect::<Vec<_>>());
+    let mut problem = problem.clone();
+    problem.settings.strategy = Strategy::Sliding;
+    problem.settings.t_max = BoundUpdate::Consistent;
+    let records = end(&problem)?.ok()?;
+    let assumed = records.iter().zip(&problem.nodes).map(|(record, node)| {
+        let assumed = AssumedMode::from_mode(record.decision.next, record.t_max_used);
+        if node.choices().contains(&assumed) {
+            assumed
+        } else {
+            AssumedMode::from_mode(record.decision.next, 1.0)
         }
-    }
-    None
+    });
+    Trials::new(&problem)?.answer(&assumed.collect::<Vec<_>>())
 }
 
 /// The state at which pivoting ends.
@@ -251,10 +225,10 @@ pub fn words<'a>(found: &Indefinite, name: &impl Fn(usize) -> &'a str) -> Vec<St
         "{head}: it is indefinite, perhaps by rounding of its entries"
     )];
     lines.push(match tolerance {
-        Some((tolerance, solved)) => format!(
+        Some((tolerance, (by, answer))) => format!(
             "what would help: settings.tolerance={tolerance:e}; strategy {} then solves this frozen problem: {}",
-            solved.by.name(),
-            does(&solved.answer, name)
+            by.name(),
+            does(answer, name)
         ),
         None => format!("  settings.tolerance up to {coarsest} gives no solution"),
     });

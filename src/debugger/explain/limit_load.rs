@@ -19,9 +19,9 @@
 
 use super::load_limit_probe::{LoadLimitProbe, reach};
 use super::moves_away::moves_away;
-use super::remedies::{BUDGET, RemedyTrial, attempt_within};
-use super::remedy::{LADDER, Remedy};
-use super::restart::{TrialEnd, restart};
+use super::remedies::{self, BUDGET, RemedyTrial, attempt_within};
+use super::remedy::{LADDER, Remedy, RemedyInput};
+use super::restart::{FailedLoad, TrialEnd};
 use super::rigid_motion::{BodyMotion, is_held_by_contacts_only};
 use super::surface_end::passed_end;
 use super::try_list::helps;
@@ -204,11 +204,17 @@ fn with_ladder(
         search: SearchBudget::Mode(SearchMode::Off),
         ..state.controls.settings
     };
+    let ladder = Remedy {
+        kind: LADDER,
+        label: String::new(),
+        how: RemedyInput::Listed,
+        first: vec![Intervention::Settings(settings)],
+    };
     stepper.restore(&state.attempt_again());
-    stepper.intervene(&Intervention::Settings(settings)).ok()?;
-    let run = restart(stepper, state, MOST_OF_LADDER.into(), stop)?;
+    let target = FailedLoad::new(state);
+    let run = remedies::run(stepper, target, &ladder, MOST_OF_LADDER, stop)?;
     match run.end {
-        TrialEnd::Converged => Some(Ok(run.minors)),
+        TrialEnd::Converged => Some(Ok(run.minors.into())),
         TrialEnd::Failed(failure) => Some(Err((stepper.state().clone(), failure))),
         _ => None,
     }

@@ -54,7 +54,7 @@ pub fn page(
             Status::Finished => nothing(DONE),
             _ => frozen(stepper, state, stop),
         };
-        let found = DiagnosisPage::new(found);
+        let found = DiagnosisPage::new(stepper.model(), found);
         if stop() {
             tell(&found);
             return None;
@@ -143,9 +143,13 @@ pub struct DiagnosisPage {
 }
 
 impl DiagnosisPage {
-    /// The page of a state that has not failed.
-    pub fn new(found: Examination) -> DiagnosisPage {
-        DiagnosisPage::with_facts(found.head.clone(), found.facts.clone(), found)
+    /// The page of a state that has not failed; it offers to start from the consistent states.
+    pub fn new(model: &Model, found: Examination) -> DiagnosisPage {
+        let states = Remedy::answers(model, &found).into_iter();
+        DiagnosisPage {
+            tries: states.map(|state| TryLine::untried(&state, None)).collect(),
+            ..DiagnosisPage::with_facts(found.head.clone(), found.facts.clone(), found)
+        }
     }
 
     /// The page of an attached solver's state: what it reports, the examination of its interface problem, and what can be
@@ -554,11 +558,8 @@ impl PageBuilder {
             let part = if explained { Part::Details } else { Part::Why };
             facts.insert(0, Fact::new(part, &found.head));
         }
-        let tries = self.tries();
-        let is_tried = |text: &str| tries.iter().any(|line| line.is_repeated_by(text));
-        facts.retain(|fact| !is_tried(&fact.text));
         DiagnosisPage {
-            tries,
+            tries: self.tries(),
             going_on: going_on.to_owned(),
             ..DiagnosisPage::with_facts(self.what.clone(), facts, found)
         }

@@ -160,12 +160,9 @@ pub fn cycle_words<'a>(
 
 /// The fixed point of T_max at the first nodes.
 fn fixed_words<'a>(found: &TMaxIteration, name: &impl Fn(usize) -> &'a str) -> Option<String> {
-    let words = |(&place, &t_max)| format!("{} at {}", sig4(t_max), name(place));
-    let text = first_of(
-        found.places.iter().zip(&found.fixed).map(words),
-        MOST_NAMED,
-        ", ",
-    );
+    let fixed = found.places.iter().zip(&found.fixed);
+    let fixed = fixed.map(|(&place, &t_max)| format!("{} at {}", sig4(t_max), name(place)));
+    let text = first_of(fixed, MOST_NAMED, ", ");
     (!text.is_empty()).then(|| format!("  its fixed point: T_max = {text}"))
 }
 

@@ -200,19 +200,11 @@ fn attempt_restart(
     {
         return None;
     }
-    let began = Instant::now();
-    let run = restart::restart(&mut stepper, state, restart::BUDGET, stop)?;
-    let count = |n: u64| u32::try_from(n).unwrap_or(u32::MAX);
-    let mut trial = RemedyTrial::new(remedy);
-    trial.seconds = began.elapsed().as_secs_f64();
-    (trial.minors, trial.majors) = (count(run.minors), count(run.majors));
-    trial.factorizations = count(run.factorizations);
-    trial.end = run.end;
-    if trial.end == TrialEnd::Converged
-        && let Outcome::Increment { after, .. } = &stepper.event().outcome
-    {
-        trial.left = Some(left(&stepper, stepper.event(), after));
-    }
+    let target = FailedLoad::from_start(stepper.model(), state);
+    let mut trial = run(&mut stepper, target, remedy, restart::BUDGET, stop)?;
+    trial.factorizations = u32::try_from(stepper.work().factorizations).unwrap_or(u32::MAX);
+    // A branch cannot repeat them.
+    trial.steps.clear();
     Some(trial)
 }
 
@@ -243,7 +235,18 @@ pub fn attempt_within(
     stop: &dyn Fn() -> bool,
 ) -> Option<RemedyTrial> {
     solver.restore(state).ok()?;
-    let target = FailedLoad::new(state);
+    run(solver, FailedLoad::new(state), remedy, budget, stop)
+}
+
+/// Applies a remedy, and runs to the load; `None` as in [`attempt`].
+pub(super) fn run(
+    solver: &mut dyn Solver,
+    target: FailedLoad,
+    remedy: &Remedy,
+    budget: u32,
+    stop: &dyn Fn() -> bool,
+) -> Option<RemedyTrial> {
+    let restarts = matches!(remedy.how, RemedyInput::Restart(_));
     let mut trial = RemedyTrial::new(remedy);
     let change = |solver: &mut dyn Solver, trial: &mut RemedyTrial, what: Intervention| {
         // Impossible interventions are skipped: a node past its surface cannot touch.
@@ -271,7 +274,9 @@ pub fn attempt_within(
             let event = stepper.event();
             trial.factorizations += u32::from(ends || !stepper.condenses());
             match &event.outcome {
-                Outcome::Increment { after, marked, .. } if is_there || marked.is_some() => {
+                Outcome::Increment { after, marked, .. }
+                    if is_there || marked.is_some() && !restarts =>
+                {
                     trial.left = Some(left(stepper, event, after));
                     let against = marked.as_ref().map(|found| TrialEnd::Against(found.law));
                     return ControlFlow::Break(against.unwrap_or(TrialEnd::Converged));

@@ -1,18 +1,17 @@
-//! Tries a changed scene from its start to the load of a failure, for changes that are impossible within a run,
+//! A changed scene, which is tried from its start to the load of a failure, for changes that are impossible within a run,
 //! such as another mesh or material law.
 
 use super::current_scene::CurrentScene;
 use std::collections::HashSet;
-use std::ops::ControlFlow;
 use std::sync::Arc;
 use stickslip_core::model::MonitorQuantity;
 use stickslip_core::plane::distance;
-use stickslip_core::{Failure, JudgedLaw, Model, RunEnd, State, Status, Stepper, Until};
+use stickslip_core::{Failure, JudgedLaw, Model, RunEnd, State, Status, Stepper};
 use stickslip_scene::format::paths;
 use stickslip_scene::{Scene, Spec};
 
 /// Maximum number of minor iterations in the trial of a changed scene.
-pub(super) const BUDGET: u64 = 4000;
+pub(super) const BUDGET: u32 = 4000;
 
 /// Distance up to which two nodes are at the same place, relative to the scene's length.
 const SAME: f64 = 1e-6;
@@ -44,19 +43,6 @@ impl TrialEnd {
             RunEnd::Interrupted => return None,
         })
     }
-}
-
-/// Result of the trial.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Restart {
-    /// Minor iterations from the start.
-    pub minors: u64,
-    /// Major iterations from the start.
-    pub majors: u64,
-    /// Factorizations from the start.
-    pub factorizations: u64,
-    /// How it ended.
-    pub end: TrialEnd,
 }
 
 /// The solver of a scene at its start, with the settings and friction of a failed state and then these changes, by path. `None`
@@ -165,39 +151,6 @@ fn roles(model: &Model) -> Vec<(Role, [f64; 2])> {
     all
 }
 
-/// Runs a stepper to the load at which a state failed, in at most `budget` minor iterations. `None` if interrupted.
-pub fn restart(
-    stepper: &mut Stepper,
-    state: &State,
-    budget: u64,
-    stop: &dyn Fn() -> bool,
-) -> Option<Restart> {
-    let mut target = FailedLoad::new(state);
-    // From the start, the load is reached in the direction of its leg.
-    if let Some([from, to]) = stepper.model().path.get(target.leg..target.leg + 2) {
-        target.way = (to - from).signum();
-    }
-    let (mut minors, mut majors) = (0, 0);
-    let until = Until::end().minors(budget).interrupted_by(stop);
-    let end = stepper.drive(until, |stepper| {
-        minors += 1;
-        let outcome = &stepper.event().outcome;
-        majors += u64::from(outcome.ends_major());
-        let accepted = outcome.is_accepted();
-        if accepted && target.is_passed(stepper.state()) {
-            ControlFlow::Break(TrialEnd::Converged)
-        } else {
-            ControlFlow::Continue(())
-        }
-    });
-    Some(Restart {
-        minors,
-        majors,
-        factorizations: stepper.work().factorizations,
-        end: TrialEnd::from_run(end)?,
-    })
-}
-
 /// The load at which an increment failed.
 #[derive(Clone, Copy)]
 pub(super) struct FailedLoad {
@@ -215,6 +168,15 @@ impl FailedLoad {
             load: state.load_factor,
             way: (state.load_factor - state.start.load_factor).signum(),
         }
+    }
+
+    /// The same for a run from the start, where it is reached in the direction of its leg.
+    pub fn from_start(model: &Model, state: &State) -> FailedLoad {
+        let mut target = FailedLoad::new(state);
+        if let Some([from, to]) = model.path.get(target.leg..target.leg + 2) {
+            target.way = (to - from).signum();
+        }
+        target
     }
 
     /// Whether the last accepted state has reached it.

@@ -31,13 +31,6 @@ pub struct TryLine {
 }
 
 impl TryLine {
-    /// Whether a detail is about the same command, which was only tried on the problem of the iteration there.
-    pub fn is_repeated_by(&self, detail: &str) -> bool {
-        let command = detail.strip_prefix("tried: ");
-        let rest = command.and_then(|command| command.strip_prefix(self.typed.as_str()));
-        !self.typed.is_empty() && rest.is_some_and(|rest| rest.starts_with(": "))
-    }
-
     /// The line of a tried remedy.
     pub fn tried(trial: &RemedyTrial) -> TryLine {
         let works = helps(trial);

@@ -17,15 +17,6 @@ use stickslip_scene::{first_of, shortest, sig2};
 /// Relative difference below which two states are the same.
 pub const SAME_STATE: f64 = 1e-7;
 
-/// Whether two states are the same.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Sameness {
-    /// Equal within [`SAME_STATE`].
-    Same,
-    /// Not equal.
-    Different,
-}
-
 /// A slave node in one of the branches. Compression is positive.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NodeSide {
@@ -62,7 +53,7 @@ pub struct Comparison {
     pub common: Option<[Side; 2]>,
     /// Whether the states at the common point are the same; `None` if there is no such point, or a frame is
     /// thinned.
-    pub sameness: Option<Sameness>,
+    pub is_same: Option<bool>,
 }
 
 /// Compares two branches; `None` if one does not exist.
@@ -76,12 +67,12 @@ pub fn compare(tree: &Tree, a: usize, b: usize) -> Option<Comparison> {
     Some(Comparison {
         tips: [tip(a)?, tip(b)?],
         common,
-        sameness: places.and_then(|[at_a, at_b]| same(tree, (a, at_a), (b, at_b))),
+        is_same: places.and_then(|[at_a, at_b]| same(tree, (a, at_a), (b, at_b))),
     })
 }
 
 /// Whether two branches have the same state at the last load that both accepted, and that load.
-pub(super) fn sameness(tree: &Tree, a: usize, b: usize) -> Option<(Sameness, f64)> {
+pub(super) fn sameness(tree: &Tree, a: usize, b: usize) -> Option<(bool, f64)> {
     let [at_a, at_b] = common_load(tree, a, b)?;
     let (_, strip) = tree.point(a, at_a)?;
     Some((same(tree, (a, at_a), (b, at_b))?, strip.load_factor))
@@ -157,7 +148,7 @@ fn solved(frame: &Frame) -> &[ContactRecord] {
     within.map_or(&[], |event| &event.nodes)
 }
 
-fn same(tree: &Tree, a: (usize, usize), b: (usize, usize)) -> Option<Sameness> {
+fn same(tree: &Tree, a: (usize, usize), b: (usize, usize)) -> Option<bool> {
     let (x, _) = tree.point(a.0, a.1)?;
     let (y, _) = tree.point(b.0, b.1)?;
     if !(x.is_whole() && y.is_whole()) {
@@ -186,16 +177,11 @@ fn same(tree: &Tree, a: (usize, usize), b: (usize, usize)) -> Option<Sameness> {
     let length = tree.model().length;
     let moved =
         apart(&x.state.u, &y.state.u, length) || apart(&gaps(solved_x), &gaps(solved_y), length);
-    Some(if moved || apart(&f, &g, largest) {
-        Sameness::Different
-    } else {
-        Sameness::Same
-    })
+    Some(!moved && !apart(&f, &g, largest))
 }
 
 /// The comparison in one line.
 pub fn describe(tree: &Tree, comparison: &Comparison) -> String {
-    let model = tree.model();
     let cost = |side: &Side| {
         let Cost {
             minors,
@@ -210,25 +196,24 @@ pub fn describe(tree: &Tree, comparison: &Comparison) -> String {
             sig2(side.residual)
         )
     };
-    let [a, b] = &comparison.tips;
-    let state = match (&comparison.common, comparison.sameness) {
-        (None, _) => "the branches share no iteration after the fork".into(),
-        (Some([a, _]), Some(Sameness::Same)) => {
-            format!("same state at load {}", shortest(a.load_factor))
-        }
-        (Some([a, b]), Some(Sameness::Different)) => format!(
-            "different states at load {}{}",
-            shortest(a.load_factor),
-            differing(model, a, b)
-        ),
-        (Some([a, _]), None) => {
-            format!(
-                "at load {} one state was thinned; go there first to recompute it",
-                shortest(a.load_factor)
-            )
-        }
+    let [a, b] = comparison.tips.each_ref().map(cost);
+    format!("{a}; {b}; {}", verdict(tree, comparison))
+}
+
+/// Whether the states at the common point are the same, in words.
+pub fn verdict(tree: &Tree, comparison: &Comparison) -> String {
+    let Some([a, b]) = &comparison.common else {
+        return "the branches share no iteration after the fork".into();
     };
-    format!("{}; {}; {state}", cost(a), cost(b))
+    let load = shortest(a.load_factor);
+    match comparison.is_same {
+        Some(true) => format!("same state at load {load}"),
+        Some(false) => {
+            let nodes = differing(tree.model(), a, b);
+            format!("different states at load {load}{nodes}")
+        }
+        None => format!("at load {load} one state was thinned; go there first to recompute it"),
+    }
 }
 
 /// The first nodes whose modes differ.

@@ -13,7 +13,7 @@ use stickslip_core::contact::record;
 use stickslip_core::interface::cycle;
 use stickslip_core::plane::max_abs;
 use stickslip_core::{Mode, Model, counted};
-use stickslip_scene::joined;
+use stickslip_scene::{first_of, joined};
 
 /// Longest period searched for.
 const LONGEST: usize = 200;
@@ -234,8 +234,8 @@ pub fn words(model: &Model, rounds: &Rounds, tells_since: bool) -> String {
             let swings_only = |found: &&(usize, Vec<Phase>)| {
                 keeps(found) && swings.iter().any(|swing| swing.0 == found.0)
             };
-            let named = || members.iter().filter(|found| !swings_only(found));
-            let lines: Vec<String> = named().take(NAMED).map(member).collect();
+            let named = members.iter().filter(|found| !swings_only(found));
+            let lines = first_of(named.map(member), NAMED, "; ");
             let most = swings
                 .iter()
                 .copied()
@@ -250,23 +250,17 @@ pub fn words(model: &Model, rounds: &Rounds, tells_since: bool) -> String {
                     names::slave(model, slave)
                 )
             });
+            let lines = (!lines.is_empty()).then_some(lines);
             format!(
-                "cycle of period {period}{since}: {}{}",
-                joined(swing.into_iter().chain(lines), "; "),
-                more(named().count())
+                "cycle of period {period}{since}: {}",
+                joined(swing.into_iter().chain(lines), "; ")
             )
         }
         Rounds::Irregular { members, over } => {
-            let lines = joined(
-                members.iter().take(NAMED).map(|(slave, count)| {
-                    format!(
-                        "{} ({})",
-                        names::slave(model, *slave),
-                        counted(*count, "time")
-                    )
-                }),
-                ", ",
-            );
+            let line = |(slave, count): &(usize, usize)| {
+                let name = names::slave(model, *slave);
+                format!("{name} ({})", counted(*count, "time"))
+            };
             // Fewer iterations have had no time to repeat.
             let order = if *over < BACK {
                 ""
@@ -274,10 +268,9 @@ pub fn words(model: &Model, rounds: &Rounds, tells_since: bool) -> String {
                 " without a period"
             };
             format!(
-                "changed in the last {}{order}: {}{}",
+                "changed in the last {}{order}: {}",
                 counted(*over, "iteration"),
-                lines,
-                more(members.len())
+                first_of(members.iter().map(line), NAMED, ", ")
             )
         }
     }
@@ -305,11 +298,4 @@ fn swings(members: &[(usize, Vec<Phase>)]) -> impl Iterator<Item = (usize, f64)>
         (*slave, finite.fold(0.0, f64::max))
     });
     largest.filter(|(_, degrees)| *degrees > SAME)
-}
-
-fn more(count: usize) -> String {
-    match count.saturating_sub(NAMED) {
-        0 => String::new(),
-        more => format!(", and {more} more"),
-    }
 }

@@ -118,7 +118,7 @@ pub struct Strip {
     pub after: Option<Box<Norms>>,
     /// Bodies that moved without a force in the increment that was accepted here, and nodes past the ends of surfaces.
     pub unforced: Box<[PlaceFinding]>,
-    /// Wall time of the solve; not part of the state, and never compared.
+    /// Wall time of the solve; not part of the state.
     pub seconds: f32,
     /// One byte per slave node: bits 0-1 mode before, 2-3 next mode, 4 forced once, 5 held, 6 held in a corner,
     /// 7 an attached solver departed from its own rules.
@@ -292,21 +292,6 @@ impl Strip {
         self.marks[one] == self.marks[other]
             && self.direction(one) == self.direction(other)
             && self.letter(one) == self.letter(other)
-    }
-
-    /// Whether two strips are equal except for the wall time.
-    pub fn tells_the_same(&self, other: &Strip) -> bool {
-        let numbers = |strip: &Strip| {
-            let margins = strip.margins.iter().map(|margin| margin.to_bits());
-            let rest = [strip.load_factor.to_bits(), strip.residual.to_bits()];
-            (margins.collect::<Vec<_>>(), rest)
-        };
-        (self.position, self.kind) == (other.position, other.kind)
-            && self.marks == other.marks
-            && self.elements == other.elements
-            && self.letters == other.letters
-            && self.directions == other.directions
-            && numbers(self) == numbers(other)
     }
 }
 

@@ -335,20 +335,13 @@ impl Tree {
             .unwrap_or(0)
     }
 
-    /// Restores a thinned frame of the line. Returns `false` if the frame does not match its strip.
-    pub fn refill(&mut self, at: usize, state: State, event: Option<Arc<Event>>) -> bool {
-        let before = at.checked_sub(1).map(|k| &self.line.strips[k]);
-        let (frame, strip) = (&mut self.line.frames[at], &self.line.strips[at]);
-        let again = match (&frame.intervention, before) {
-            (Some(_), Some(before)) => Strip::intervention(&self.model, &state, before),
-            _ => Strip::new(&self.model, &state, event.as_deref(), before, 0.0),
-        };
-        if frame.is_whole() {
-            return true;
+    /// Restores a thinned frame of the line.
+    pub fn refill(&mut self, at: usize, state: State, event: Option<Arc<Event>>) {
+        let frame = &mut self.line.frames[at];
+        if !frame.is_whole() {
+            (frame.state, frame.event) = (state, event);
+            self.ledger.add(frame);
         }
-        (frame.state, frame.event) = (state, event);
-        self.ledger.add(frame);
-        again.tells_the_same(strip)
     }
 
     /// Thins frames until they fit into the budget, except the two being shown.

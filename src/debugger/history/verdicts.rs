@@ -1,7 +1,7 @@
 //! How each branch ended, found by comparing it with earlier branches.
 
 use super::branches::{Cost, cost, name};
-use super::compare::{self, Sameness};
+use super::compare;
 use super::frame::Frame;
 use super::strip::PointKind;
 use super::tree::Tree;
@@ -130,14 +130,14 @@ pub fn verdict(tree: &Tree, branch: usize) -> BranchEnd {
             let mut other = None;
             for earlier in others() {
                 match compare::sameness(tree, branch, earlier) {
-                    Some((Sameness::Same, load)) => {
+                    Some((true, load)) => {
                         return BranchEnd::Same {
                             branch: earlier,
                             load,
                         };
                     }
                     // A state that fails the check does not count as another valid state.
-                    Some((Sameness::Different, load)) if !ends_marked(tree, earlier) => {
+                    Some((false, load)) if !ends_marked(tree, earlier) => {
                         other.get_or_insert(BranchEnd::Other {
                             branch: earlier,
                             load,
@@ -179,7 +179,7 @@ fn cycle(frame: &Frame) -> Option<&Cycle> {
 }
 
 /// Whether two cycles have the same period, members and patterns, up to a shift.
-pub(crate) fn is_same_cycle(a: &Cycle, b: &Cycle) -> bool {
+fn is_same_cycle(a: &Cycle, b: &Cycle) -> bool {
     if a.period != b.period || a.members.len() != b.members.len() {
         return false;
     }

@@ -4,15 +4,13 @@
 //! interventions, the limit of the residual, and the scalars of the scenes. Numbers may differ by 1e-9 of their
 //! scale, because another processor may sum in another order. The scale is the force scale of the residual norms
 //! for forces, the diagonal of the scene's bodies for lengths, and 1 for rotations and for residuals, which are
-//! relative already; or the number itself, if that is larger. NaN equals NaN. Names of scenes are not compared.
+//! relative already; or the number itself, if that is larger. NaN equals NaN. Not compared: names of scenes, the
+//! numbers in a status, and the noise of residuals.
 
-use super::snapshot::{Displacement, Recorded, SlaveRecord, Snapshot};
-use crate::explain::tested::Dimension::{self, Force, Length, Ratio};
-use std::borrow::Cow;
-use std::collections::BTreeMap;
-use std::fmt::{self, Debug};
-use stickslip_core::linear::singular::LooseMotion;
-use stickslip_core::{Failure, Norms, Rule, Singular, Status};
+use super::snapshot::{Recorded, Snapshot};
+use serde_json::{Map, Value, json};
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt;
 use stickslip_scene::format::paths;
 use stickslip_scene::{Scene, joined, shortest, shown, sig2, sig4};
 
@@ -34,22 +32,6 @@ pub struct Difference {
     pub apart: Option<(f64, f64)>,
 }
 
-impl Difference {
-    /// What differs, with the node: `beam.end f_n`.
-    fn what(&self) -> String {
-        match (&self.node, self.field.as_str()) {
-            (None, field) => field.to_owned(),
-            (Some(node), SLAVE | NODE) => format!("{} {node}", self.field),
-            (Some(node), field) => format!("{node} {field}"),
-        }
-    }
-}
-
-/// Field of a slave node that only one side has.
-const SLAVE: &str = "slave";
-/// Field of a node that only one side has.
-const NODE: &str = "node";
-
 /// All differences; displayed as a table.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Differences {
@@ -61,33 +43,6 @@ pub struct Differences {
     scales: [f64; 2],
     /// Increments and load factors of both sides, if the increments differ.
     apart: Option<[(u32, f64); 2]>,
-}
-
-/// A value of one side.
-enum FieldValue {
-    /// Compared exactly.
-    Text(Cow<'static, str>),
-    /// Compared within the tolerance, if both sides have it.
-    Number(Option<f64>, Dimension),
-}
-
-/// What is compared, and its value.
-type Field = (Cow<'static, str>, FieldValue);
-
-fn exact(field: &'static str, value: impl Debug) -> Field {
-    text(field, word(value))
-}
-
-fn text(field: impl Into<Cow<'static, str>>, value: impl Into<Cow<'static, str>>) -> Field {
-    (field.into(), FieldValue::Text(value.into()))
-}
-
-fn number(
-    field: impl Into<Cow<'static, str>>,
-    value: impl Into<Option<f64>>,
-    of: Dimension,
-) -> Field {
-    (field.into(), FieldValue::Number(value.into(), of))
 }
 
 /// Compares two snapshots, node by node.
@@ -107,97 +62,56 @@ pub fn compare_within(a: &Snapshot, b: &Snapshot, tolerance: f64) -> Differences
         apart: (a.position.increment != b.position.increment)
             .then(|| [a, b].map(|one| (one.position.increment, one.state.load_factor))),
     };
-    found.scenes(a, b);
-    let (left, right) = (&a.state, &b.state);
-    found.fields(None, run(a), run(b));
-    found.fields(None, counts(left), counts(right));
-    for (when, a, b) in [
-        ("residual before", &left.before, &right.before),
-        ("residual after", &left.after, &right.after),
-    ] {
-        found.fields(None, norms(when, a), norms(when, b));
+    if a.scene != b.scene {
+        let [left, right] = [a, b].map(scalars);
+        found.objects(None, "", &left, &right);
+        if found.is_empty() {
+            let other = "differs, but not in a scalar".into();
+            found.exact(None, "scene", &"original".into(), &other);
+        }
     }
-    found.named(SLAVE, &left.slaves, &right.slaves, |s| &s.node, slave);
-    let [left, right] = [left, right].map(|state| &state.displacements);
-    found.named(NODE, left, right, |d| &d.node, displacement);
-    found.fields(None, shear(a), shear(b));
+    let [left, right] = [a, b].map(tree);
+    found.values(None, "", "", &left, &right);
+    found.rows.sort_by_key(|row| row.node.is_some());
     found
 }
 
-fn run(snapshot: &Snapshot) -> Vec<Field> {
-    let (at, state) = (snapshot.position, &snapshot.state);
-    vec![
-        exact("interventions", interventions(snapshot)),
-        exact("minor iterations done", snapshot.steps),
-        exact("increment", at.increment),
-        exact("attempt", at.attempt),
-        exact("major", at.major),
-        exact("minor", at.minor),
-        number("load factor", state.load_factor, Ratio),
-        text("status", status(&state.status)),
-    ]
+/// What is compared of a snapshot, except its scene.
+fn tree(snapshot: &Snapshot) -> Value {
+    let state = &snapshot.state;
+    // JSON makes them null.
+    let text = format!("{state:?}");
+    let words = text.split(|c: char| !c.is_alphanumeric() && c != '-');
+    let not_finite = words.filter(|word| ["NaN", "inf", "-inf"].contains(word));
+    json!({
+        "interventions": snapshot.interventions,
+        "steps": snapshot.steps,
+        "position": snapshot.position,
+        "state": state,
+        "numbers that are not finite": joined(not_finite, " "),
+    })
 }
 
-/// Numbers of rows. Rows are compared by name, so that a repeated one would replace the one before.
-fn counts(state: &Recorded) -> Vec<Field> {
-    vec![
-        exact("number of slave nodes", state.slaves.len()),
-        exact("number of nodes", state.displacements.len()),
-    ]
-}
-
-fn norms(when: &'static str, norms: &Option<Norms>) -> Vec<Field> {
-    let numbers = norms.as_ref().map(|norms| {
-        [
-            ("force", norms.force, Force),
-            ("relative", norms.relative, Ratio),
-            ("interface", norms.interface, Ratio),
-            ("correction", norms.correction, Ratio),
-            ("force scale", norms.scale, Force),
-        ]
-    });
-    let limit = norms
-        .as_ref()
-        .map(|norms| text(format!("{when}, limit"), sig2(norms.limit)));
-    let numbers = numbers.into_iter().flatten();
-    let numbers = numbers.map(|(what, value, of)| number(format!("{when}, {what}"), value, of));
-    [text(when, norms.as_ref().map_or(ABSENT, |_| THERE))]
-        .into_iter()
-        .chain(numbers)
-        .chain(limit)
+/// The scalars of a scene.
+fn scalars(snapshot: &Snapshot) -> Map<String, Value> {
+    let all = paths::list(&snapshot.scene).into_iter();
+    all.map(|l| (format!("scene {}", l.path), l.value.into()))
         .collect()
 }
 
-fn slave(slave: &SlaveRecord) -> Vec<Field> {
-    vec![
-        text("mode", slave.mode.word()),
-        text("next", slave.next.word()),
-        text("rule", slave.rule.map_or(ABSENT, Rule::name)),
-        exact("forced", slave.forced),
-        number("gap", slave.gap, Length),
-        number("f_n", slave.f_n, Force),
-        number("f_t", slave.f_t, Force),
-        number("t_max", slave.t_max, Force),
-        number("slip", slave.slip, Length),
-    ]
-}
-
-fn displacement(of: &Displacement) -> Vec<Field> {
-    vec![
-        number("x", of.x, Length),
-        number("y", of.y, Length),
-        number("rotation", of.rotation, Ratio),
-    ]
-}
-
-fn shear(snapshot: &Snapshot) -> Vec<Field> {
-    let forces = &snapshot.state.shear;
-    let numbers = (1..).zip(forces);
-    let numbers = numbers.map(|(k, value)| number(format!("shear force {k}"), *value, Force));
-    [exact("number of shear forces", forces.len())]
-        .into_iter()
-        .chain(numbers)
-        .collect()
+/// The name of a field; of a list, that of an entry.
+fn name(key: &str) -> &str {
+    match key {
+        "steps" => "minor iterations done",
+        "load_factor" => "load factor",
+        "before" => "residual before",
+        "after" => "residual after",
+        "scale" => "force scale",
+        "slaves" => "slave node",
+        "displacements" => "node",
+        "shear" => "shear force",
+        _ => key,
+    }
 }
 
 impl Differences {
@@ -233,143 +147,107 @@ impl Differences {
         self.rows.is_empty()
     }
 
-    fn scenes(&mut self, a: &Snapshot, b: &Snapshot) {
-        if a.scene == b.scene {
-            return;
-        }
-        let before = self.rows.len();
-        let values = |s: &Snapshot| -> BTreeMap<String, String> {
-            paths::list(&s.scene)
-                .into_iter()
-                .map(|l| (l.path, l.value))
-                .collect()
-        };
-        let (left, right) = (values(a), values(b));
-        for (path, pair) in paired(&left, &right) {
-            let [left, right] = [pair.0, pair.1].map(|value| value.map_or(ABSENT, String::as_str));
-            self.text(None, format!("scene {path}"), left, right);
-        }
-        if self.rows.len() == before {
-            self.text(None, "scene", "original", "differs, but not in a scalar");
-        }
-    }
-
-    /// Compares the items that both sides have under a name; one that only one side has is a difference.
-    fn named<'a, T>(
+    fn objects(
         &mut self,
-        kind: &str,
-        a: &'a [T],
-        b: &'a [T],
-        name: fn(&T) -> &String,
-        fields: fn(&T) -> Vec<Field>,
+        node: Option<&str>,
+        within: &str,
+        a: &Map<String, Value>,
+        b: &Map<String, Value>,
     ) {
-        let by_name = |all: &'a [T]| -> BTreeMap<String, &'a T> {
-            all.iter().map(|one| (name(one).clone(), one)).collect()
-        };
-        for (node, pair) in paired(&by_name(a), &by_name(b)) {
-            match pair {
-                (Some(left), Some(right)) => self.fields(Some(node), fields(left), fields(right)),
-                (left, right) => {
-                    let [left, right] = [left, right].map(|own| own.map_or(ABSENT, |_| THERE));
-                    self.text(Some(node), kind, left, right);
-                }
-            }
+        for key in a.keys().chain(b.keys()).collect::<BTreeSet<_>>() {
+            let [left, right] = [a, b].map(|all| all.get(key).unwrap_or(&Value::Null));
+            self.values(node, key, &format!("{within}{}", name(key)), left, right);
         }
     }
 
-    /// Compares the fields that both sides have.
-    fn fields(&mut self, node: Option<&String>, left: Vec<Field>, right: Vec<Field>) {
-        let [force, length] = self.scales;
-        for ((field, left), (_, right)) in left.into_iter().zip(right) {
-            match (left, right) {
-                (FieldValue::Number(Some(left), of), FieldValue::Number(Some(right), _)) => {
-                    self.number(node, field, (left, right), of.scale(force, length));
-                }
-                (left, right) => {
-                    let [left, right] = [left, right].map(|value| match value {
-                        FieldValue::Text(text) => text,
-                        FieldValue::Number(value, _) => word(value).into(),
-                    });
-                    self.text(node, field, &left, &right);
-                }
-            }
-        }
-    }
-
-    fn text<'a>(
-        &mut self,
-        node: Option<&String>,
-        field: impl Into<Cow<'a, str>>,
-        left: &str,
-        right: &str,
-    ) {
-        if left != right {
-            self.rows.push(Difference {
-                node: node.cloned(),
-                field: field.into().into_owned(),
-                left: left.to_owned(),
-                right: right.to_owned(),
-                apart: None,
+    /// Compares entries of nodes by name, others by index.
+    fn lists(&mut self, key: &str, field: &str, a: &[Value], b: &[Value]) {
+        // Of entries with the same name, only the last is compared.
+        let count = format!("number of {field}s");
+        self.exact(None, &count, &a.len().into(), &b.len().into());
+        let [a, b] = [a, b].map(|list| -> BTreeMap<_, _> {
+            let entries = (1..).zip(list).map(|(k, entry)| {
+                let node = entry["node"].as_str();
+                ((node, node.map_or(k, |_| 0)), entry)
             });
+            entries.collect()
+        });
+        for at in a.keys().chain(b.keys()).collect::<BTreeSet<_>>() {
+            match (*at, [&a, &b].map(|all| all.get(at).copied())) {
+                ((node, _), [Some(Value::Object(a)), Some(Value::Object(b))]) => {
+                    self.objects(node, "", a, b);
+                }
+                ((None, k), [Some(a), Some(b)]) => {
+                    self.values(None, key, &format!("{field} {k}"), a, b);
+                }
+                ((node, _), both) => {
+                    let [a, b] = both.map(|one| one.unwrap_or(&Value::Null));
+                    self.exact(node, field, a, b);
+                }
+            }
         }
     }
 
-    fn number(
+    fn values(&mut self, node: Option<&str>, key: &str, field: &str, a: &Value, b: &Value) {
+        let numbers = [a, b].map(|value| value.as_f64().filter(|_| value.is_f64()));
+        match (key, numbers, a, b) {
+            ("noise", ..) => {}
+            ("status", ..) => self.exact(node, field, &without_numbers(a), &without_numbers(b)),
+            ("limit", [Some(a), Some(b)], ..) => {
+                self.exact(node, field, &sig2(a).into(), &sig2(b).into());
+            }
+            (_, [Some(a), Some(b)], ..) => {
+                let [force, length] = self.scales;
+                let scale = match key {
+                    "force" | "scale" | "f_n" | "f_t" | "t_max" | "shear" => force,
+                    "gap" | "slip" | "x" | "y" => length,
+                    _ => 1.0,
+                };
+                let allowed = self.tolerance * scale.max(a.abs()).max(b.abs());
+                let apart = (a - b).abs();
+                if apart > allowed {
+                    let both = [a, b].map(|number| format!("{number:?}"));
+                    self.row(node, field, both, Some((apart, allowed)));
+                }
+            }
+            ("interventions", ..) => self.exact(node, field, a, b),
+            ("" | "position" | "state", _, Value::Object(a), Value::Object(b)) => {
+                self.objects(node, "", a, b);
+            }
+            (_, _, Value::Object(a), Value::Object(b)) => {
+                self.objects(node, &format!("{field}, "), a, b);
+            }
+            (_, _, Value::Array(a), Value::Array(b)) => self.lists(key, field, a, b),
+            _ => self.exact(node, field, a, b),
+        }
+    }
+
+    fn exact(&mut self, node: Option<&str>, field: &str, left: &Value, right: &Value) {
+        if left != right {
+            let both = [left, right].map(|value| match value {
+                Value::Null => "-".to_owned(),
+                Value::String(text) => text.clone(),
+                other => other.to_string(),
+            });
+            self.row(node, field, both, None);
+        }
+    }
+
+    fn row(
         &mut self,
-        node: Option<&String>,
-        field: Cow<str>,
-        (left, right): (f64, f64),
-        scale: f64,
+        node: Option<&str>,
+        field: &str,
+        [left, right]: [String; 2],
+        apart: Option<(f64, f64)>,
     ) {
-        // Equality covers the infinities, whose difference is NaN.
-        if left == right || (left.is_nan() && right.is_nan()) {
-            return;
-        }
-        let allowed = self.tolerance * scale.max(left.abs()).max(right.abs());
-        let apart = (left - right).abs();
-        if apart <= allowed && apart.is_finite() {
-            return;
-        }
         self.rows.push(Difference {
-            node: node.cloned(),
-            field: field.into_owned(),
-            left: format!("{left:?}"),
-            right: format!("{right:?}"),
-            apart: Some((apart, allowed)),
+            node: node.map(str::to_owned),
+            field: field.to_owned(),
+            left,
+            right,
+            apart,
         });
     }
-}
-
-const ABSENT: &str = "-";
-const THERE: &str = "there";
-
-/// The name of a value: `Some(FixedSlides)` gives `FixedSlides`.
-fn word(value: impl Debug) -> String {
-    let text = format!("{value:?}");
-    match text.strip_prefix("Some(").and_then(|t| t.strip_suffix(')')) {
-        Some(inner) => inner.to_owned(),
-        None if text == "None" => ABSENT.to_owned(),
-        None => text,
-    }
-}
-
-fn interventions(snapshot: &Snapshot) -> Vec<String> {
-    snapshot
-        .interventions
-        .iter()
-        .map(|a| format!("after {}: {:?}", a.step, a.intervention))
-        .collect()
-}
-
-type Pairs<'a, T> = Vec<(&'a String, (Option<&'a T>, Option<&'a T>))>;
-
-/// All items by name, from both sides.
-fn paired<'a, T>(a: &'a BTreeMap<String, T>, b: &'a BTreeMap<String, T>) -> Pairs<'a, T> {
-    let only_b = b.keys().filter(|key| !a.contains_key(*key));
-    a.keys()
-        .chain(only_b)
-        .map(|key| (key, (a.get(key), b.get(key))))
-        .collect()
 }
 
 fn force(state: &Recorded) -> f64 {
@@ -387,39 +265,17 @@ fn length(snapshot: &Snapshot) -> f64 {
 }
 
 /// A status without its numbers, which may differ by round-off.
-fn status(status: &Status) -> String {
-    let Status::Failed(failure) = status else {
-        return format!("{status:?}").to_lowercase();
-    };
-    let plain = match failure.clone() {
-        Failure::MajorLimit { limit, .. } => Failure::MajorLimit {
-            limit,
-            relative: 0.0,
-            interface: 0.0,
-        },
-        Failure::Diverged { .. } => return "diverged".into(),
-        Failure::BranchJump { .. } => return "jumps".into(),
-        Failure::RoundOff { .. } => return "round-off".into(),
-        Failure::Inverted(point) => {
-            return format!("element {} of body {} inverted", point.element, point.body);
+fn without_numbers(status: &Value) -> Value {
+    match status {
+        Value::Array(all) => all.iter().map(without_numbers).collect(),
+        Value::Object(all) => {
+            let all = all.iter();
+            all.map(|(key, value)| (key.clone(), without_numbers(value)))
+                .collect()
         }
-        Failure::OverConstrained { slave, .. } => Failure::OverConstrained { slave, gap: 0.0 },
-        Failure::Singular(Singular::Rigid { motions }) => {
-            let motion = |m: &LooseMotion| match m {
-                LooseMotion::Translation(_) => "moves",
-                LooseMotion::Rotation(_) => "turns",
-            };
-            let all = joined(
-                motions
-                    .iter()
-                    .map(|m| format!("{} {}", m.body, motion(&m.motion))),
-                ", ",
-            );
-            return format!("singular: {all}");
-        }
-        other => other,
-    };
-    format!("failed: {plain:?}")
+        Value::Number(number) if number.is_f64() => Value::Null,
+        other => other.clone(),
+    }
 }
 
 impl fmt::Display for Differences {
@@ -438,10 +294,11 @@ fn table<'a>(rows: impl IntoIterator<Item = &'a Difference>) -> Vec<String> {
             .map(|(apart, allowed)| format!("{} > {}", sig4(apart), sig2(allowed)))
             .unwrap_or_default()
     };
+    let what = |row: &Difference| joined(row.node.iter().chain([&row.field]), " ");
     let mut lines = vec![["", "left", "right", "apart > allowed"].map(str::to_owned)];
     lines.extend(
         rows.into_iter()
-            .map(|r| [r.what(), r.left.clone(), r.right.clone(), apart(r)]),
+            .map(|r| [what(r), r.left.clone(), r.right.clone(), apart(r)]),
     );
     shown::aligned(&lines, lines[0].len())
 }

@@ -571,7 +571,8 @@ fn examine(
             &mut |part| drop(send(Some(part.clone()), true)),
         ),
         some => {
-            let found = DiagnosisPage::new(examine_nodes(stepper, state, some, &stopped));
+            let found = examine_nodes(stepper, state, some, &stopped);
+            let found = DiagnosisPage::new(stepper.model(), found);
             if stopped() {
                 drop(send(Some(found), true));
                 None

@@ -3,7 +3,6 @@
 use crate::explain::core::core;
 use crate::explain::diagnosis::too_many;
 use crate::explain::examination::{NOT_CONDENSED, going_round};
-use crate::explain::failures;
 use crate::explain::interface_scene;
 use crate::record::export::export_state::FINISHED;
 use crate::record::export::export_state::IN_SPACE;
@@ -86,10 +85,6 @@ fn shown(stepper: &mut Stepper, ask: &Export, kind: &ExportKind) -> Result<Vec<V
     let Some(seen) = &ask.shown else {
         return Err(Refusal::new(FINISHED));
     };
-    let ended = match &ask.state.status {
-        Status::Failed(failure) => failures::describe(stepper.model(), failure),
-        _ => String::new(),
-    };
     let shown = ExportState {
         scene: &seen.scene,
         origin: &ask.origin,
@@ -97,7 +92,6 @@ fn shown(stepper: &mut Stepper, ask: &Export, kind: &ExportKind) -> Result<Vec<V
         event: seen.event.as_deref(),
         strips: &seen.strips,
         last_major: seen.last_major.as_ref(),
-        ended,
         frozen: ask.what == ExportScope::Whole,
         picture: &PictureRequest::default(),
         events: &[],

@@ -66,13 +66,8 @@ pub struct Session {
 pub(super) enum Task {
     /// New minor iterations past the tip.
     Run,
-    /// Recomputes thinned frames: the next one, and the one wanted. `sound` is whether all of them so far equal
-    /// the originals.
-    Again {
-        next: usize,
-        target: usize,
-        sound: bool,
-    },
+    /// Recomputes thinned frames: the next one, and the one wanted.
+    Again { next: usize, target: usize },
 }
 
 impl Session {
@@ -372,8 +367,8 @@ impl Session {
             }
             Message::Again(state, event) => {
                 self.connection.step(&state);
-                if let Some(Task::Again { next, sound, .. }) = &mut self.task {
-                    *sound &= self.timeline.refill(*next, *state, event);
+                if let Some(Task::Again { next, .. }) = &mut self.task {
+                    self.timeline.refill(*next, *state, event);
                     *next += 1;
                 }
                 None
@@ -403,18 +398,10 @@ impl Session {
 
     fn done(&mut self, interrupted: bool, hits: &[u32]) -> String {
         let mut reply = self.breakpoints.describe_hits(self.model(), hits);
-        if let Some(Task::Again {
-            next,
-            target,
-            sound,
-        }) = self.task.take()
+        if let Some(Task::Again { next, target }) = self.task.take()
             && next > target
         {
             self.timeline.move_to(target);
-            if !sound {
-                reply +=
-                    "the recomputed state differs from the original (please report this bug); ";
-            }
         }
         if interrupted {
             reply += "interrupted; ";

@@ -66,7 +66,6 @@ impl Session {
             let task = Task::Again {
                 next: from + 1,
                 target,
-                sound: true,
             };
             self.work(from, task, again);
             return format!(

@@ -81,8 +81,8 @@ impl Session {
                 facts,
                 ..Examination::default()
             };
-            self.background
-                .set_examination(timeline.place(), DiagnosisPage::new(found));
+            let page = DiagnosisPage::new(timeline.model(), found);
+            self.background.set_examination(timeline.place(), page);
             return "the diagnosis (d) shows the report of the run".into();
         }
         // The solver moves to this state to report its problem, together with all changes made there.

@@ -307,11 +307,10 @@ impl Timeline {
             .collect()
     }
 
-    /// Restores a thinned frame. Returns `false` if it differs from the original.
-    pub(super) fn refill(&mut self, at: usize, state: State, event: Option<Arc<Event>>) -> bool {
-        let sound = self.tree.refill(at, state, event);
+    /// Restores a thinned frame.
+    pub(super) fn refill(&mut self, at: usize, state: State, event: Option<Arc<Event>>) {
+        self.tree.refill(at, state, event);
         self.tree.thin([at, self.cursor]);
-        sound
     }
 
     /// Number of minor iterations up to the cursor, and the interventions among them.

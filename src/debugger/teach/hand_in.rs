@@ -3,17 +3,17 @@
 //! A hand-in is the file of lesson progress ([`super::progress`]) with a name: answers, attempts and times, as the program
 //! recorded them. It is a plain file that its owner can edit.
 
-use super::progress::{LessonProgress, Progress, ProgressError};
+use super::progress::{LessonProgress, Progress};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
+use stickslip_platform::files::FileError;
 use stickslip_scene::shown;
 
 /// Writes the user's progress as a hand-in, named as the file without its extension. Returns the name.
 ///
 /// # Errors
-/// If the progress cannot be read, or the file cannot be written, or exists and `overwrite` is false.
-pub fn write(own: &Path, to: &Path, overwrite: bool) -> Result<String, ProgressError> {
-    let mut progress = Progress::read(own)?;
+/// If the file cannot be written, or exists and `overwrite` is false.
+pub fn write(mut progress: Progress, to: &Path, overwrite: bool) -> Result<String, FileError> {
     progress.name = to
         .file_stem()
         .map(|stem| stem.to_string_lossy().into_owned())

@@ -3,12 +3,14 @@
 use super::lesson;
 use super::tutor::{GivenAnswer, Tutor};
 use crate::record::journal;
+use crate::refusal::{Refusal, refusal};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::io;
 use std::path::{Path, PathBuf};
 use stickslip_platform::disk;
 use stickslip_platform::files::{self, FileError};
-use stickslip_platform::input::{self, Unreadable};
+use stickslip_platform::input;
 use stickslip_scene::format::notation;
 
 /// Format version written by this program, and the only one it reads.
@@ -59,40 +61,6 @@ impl Default for Progress {
     }
 }
 
-/// Why progress cannot be read or saved.
-#[derive(Debug, thiserror::Error)]
-pub enum ProgressError {
-    /// The file cannot be read.
-    #[error("{}: lesson progress cannot be read: {why}", file.display())]
-    Unread {
-        /// Path of the file.
-        file: PathBuf,
-        /// Cause.
-        why: Unreadable,
-    },
-    /// The file is damaged.
-    #[error("{}:{line}: lesson progress cannot be read: {message}; delete the file to start again", file.display())]
-    Damaged {
-        /// Path of the file.
-        file: PathBuf,
-        /// Line number, from 1.
-        line: usize,
-        /// What is wrong.
-        message: String,
-    },
-    /// Unknown format version.
-    #[error("{}: the file has format {found}, but this program reads only format {FORMAT}", file.display())]
-    Format {
-        /// Path of the file.
-        file: PathBuf,
-        /// Format version of the file.
-        found: u32,
-    },
-    /// The file cannot be written.
-    #[error("lesson progress cannot be saved: {0}")]
-    Unwritten(#[from] FileError),
-}
-
 /// Path of the file; `None` if the system has no home directory.
 pub fn place() -> Option<PathBuf> {
     Some(journal::home().ok()?.join("lessons.ron"))
@@ -103,27 +71,24 @@ impl Progress {
     ///
     /// # Errors
     /// If the file exists and cannot be read.
-    pub fn read(file: &Path) -> Result<Progress, ProgressError> {
+    pub fn read(file: &Path) -> Result<Progress, Refusal> {
         if !disk::exists(file) {
             return Ok(Progress::default());
         }
-        let text = input::text(file, BYTES, "delete it to start again").map_err(|why| {
-            ProgressError::Unread {
-                file: file.to_owned(),
-                why,
-            }
-        })?;
-        let read: Progress = notation::read(&text).map_err(|e| ProgressError::Damaged {
-            file: file.to_owned(),
-            line: e.span.start.line,
-            message: e.code.to_string(),
+        let at = file.display();
+        let text = input::text(file, BYTES, "delete it to start again")
+            .map_err(|why| refusal!("{at}: lesson progress cannot be read: {why}"))?;
+        let read: Progress = notation::read(&text).map_err(|e| {
+            let (line, why) = (e.span.start.line, e.code);
+            refusal!(
+                "{at}:{line}: lesson progress cannot be read: {why}; delete the file to start again"
+            )
         })?;
         match read.format {
             FORMAT => Ok(read.renamed()),
-            found => Err(ProgressError::Format {
-                file: file.to_owned(),
-                found,
-            }),
+            found => Err(refusal!(
+                "{at}: the file has format {found}, but this program reads only format {FORMAT}"
+            )),
         }
     }
 
@@ -148,15 +113,13 @@ impl Progress {
     ///
     /// # Errors
     /// If the file cannot be written, or exists and must stay.
-    pub(super) fn write(&self, file: &Path, overwrite: bool) -> Result<(), ProgressError> {
-        let text = notation::lines(self, ron::ser::PrettyConfig::new()).map_err(|e| {
-            ProgressError::Damaged {
-                file: file.to_owned(),
-                line: 1,
-                message: e.to_string(),
-            }
+    pub(super) fn write(&self, file: &Path, overwrite: bool) -> Result<(), FileError> {
+        let text = notation::lines(self, ron::ser::PrettyConfig::new());
+        let text = text.map_err(|error| FileError::Failed {
+            path: file.to_owned(),
+            source: io::Error::other(error),
         })?;
-        Ok(files::write(file, &text, overwrite)?)
+        files::write(file, &text, overwrite)
     }
 
     /// Updates the progress from the state of a lesson. Returns whether anything improved.
@@ -233,7 +196,7 @@ impl ProgressStore {
     ///
     /// # Errors
     /// As [`keep`]. After an error nothing more is saved, so that it is reported only once.
-    pub fn follow(&mut self, tutor: &Tutor) -> Result<(), ProgressError> {
+    pub fn follow(&mut self, tutor: &Tutor) -> Result<(), Refusal> {
         let here = Some((tutor.lesson().name.clone(), tutor.at()));
         let Some(file) = &self.file else {
             return Ok(());
@@ -255,16 +218,13 @@ impl ProgressStore {
 ///
 /// # Errors
 /// If the file cannot be read or written. The file is replaced completely or stays unchanged.
-pub fn keep(file: &Path, tutor: &Tutor) -> Result<(), ProgressError> {
+pub fn keep(file: &Path, tutor: &Tutor) -> Result<(), Refusal> {
     let mut progress = Progress::read(file)?;
     if !progress.take(tutor) {
         return Ok(());
     }
-    if let Some(folder) = file.parent() {
-        disk::create_dir_all(folder).map_err(|source| FileError::Failed {
-            path: folder.to_owned(),
-            source,
-        })?;
-    }
-    progress.write(file, true)
+    let folder = file.parent().map_or(Ok(()), files::create_folder);
+    folder
+        .and_then(|()| progress.write(file, true))
+        .map_err(|why| refusal!("lesson progress cannot be saved: {why}"))
 }

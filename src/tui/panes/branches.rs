@@ -14,7 +14,7 @@ use ratatui::text::{Line, Span};
 use std::ops::Range;
 use stickslip_debugger::Tree;
 use stickslip_debugger::action;
-use stickslip_debugger::history::compare::{self, Sameness, Side};
+use stickslip_debugger::history::compare::{self, Side};
 use stickslip_debugger::history::verdicts::{BranchEnd, Summary};
 use stickslip_debugger::history::{branches, verdicts};
 use stickslip_scene::number;
@@ -199,26 +199,15 @@ fn comparison(
     let Some(found) = compare::compare(tree, selected, current) else {
         return Vec::new();
     };
-    let (sides, place) = match &found.common {
-        Some(common) => (
-            common,
-            format!("at load {}", number::shortest(common[0].load_factor)),
-        ),
-        None => (&found.tips, "at the last states".into()),
-    };
-    let verdict = match (&found.common, found.sameness) {
-        (None, _) => "no common iteration after the fork",
-        (_, Some(Sameness::Same)) => "same state",
-        (_, Some(Sameness::Different)) => "different states",
-        (_, None) => "one state is not stored; go there first",
-    };
+    let sides = found.common.as_ref().unwrap_or(&found.tips);
+    let verdict = compare::verdict(tree, &found);
     let head = |side: &Side| {
         let name = paint::cut(&branches::name(tree, side.branch), wide - 2);
         Span::styled(format!("{name:<wide$}"), theme.heading)
     };
     let mut lines = vec![
         Line::default(),
-        Line::styled(format!(" Compared {place}: {verdict}"), theme.strong),
+        Line::styled(format!(" Compared: {verdict}"), theme.strong),
         Line::from(vec![
             Span::raw(" ".repeat(NAME + 2)),
             head(&sides[0]),

@@ -1,5 +1,5 @@
 //! The diagnosis: What, Why and Try, and below them the loop, the census, the rates and the details. Enter takes the selected line
-//! of Try, or folds the selected part below. If nothing failed, the consistent states are listed side by side, and Enter starts from the selected one.
+//! of Try, or folds the selected part below.
 
 use crate::app::App;
 use crate::copied::NamedText;
@@ -11,29 +11,10 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
 use ratatui::text::{Line, Span};
-use stickslip_core::NodeAnswer;
-use stickslip_core::interface::census::Census;
 use stickslip_debugger::DiagnosisPage;
 use stickslip_debugger::explain::facts::Part;
 use stickslip_debugger::explain::try_list::TryOutcome;
-use stickslip_scene::number;
-use stickslip_scene::shown;
 use unicode_width::UnicodeWidthStr;
-
-/// Width of a consistent state's column: a letter and three numbers.
-const CELL: usize = 34;
-const NAME: usize = 12;
-/// Maximum number of nodes listed; if there are more, nodes in which the states differ come first.
-const MOST_LISTED: usize = 8;
-
-/// Number of rows of the diagnosis that can be selected above its parts: lines of Try, or consistent states.
-pub fn choices(page: &DiagnosisPage) -> usize {
-    let states = page.found.census.as_ref();
-    match page.tries.len() {
-        0 => states.map_or(0, |census| census.answers.len()),
-        tries => tries,
-    }
-}
 
 /// The pane.
 pub const PANE: PaneEntry = PaneEntry {
@@ -83,25 +64,17 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
             if !page.going_on.is_empty() {
                 title += &format!(" ({})", page.going_on);
             }
-            let (mut lines, selected) = words(page, width, app);
-            let mut answers = answers(page, width, app, view);
-            if page.found.fails {
-                lines.append(&mut answers);
-            }
-            // A list of states to select from must be visible; the text above it scrolls.
-            let room = height.saturating_sub(answers.len());
+            let (lines, selected) = words(page, width, app);
             let least = match app.scroll {
-                0 => (selected + 1).saturating_sub(room),
+                0 => (selected + 1).saturating_sub(height),
                 scroll => scroll,
             };
-            let top = least.min(lines.len().saturating_sub(room));
-            if room < lines.len() {
-                let end = top + room;
+            let top = least.min(lines.len().saturating_sub(height));
+            if height < lines.len() {
+                let end = top + height;
                 title += &format!("  lines {} to {end} of {} (PageDown)", top + 1, lines.len());
             }
-            lines = lines.into_iter().skip(top).take(room).collect();
-            lines.extend(answers);
-            lines
+            lines.into_iter().skip(top).take(height).collect()
         }
     };
     let inner = frame(buffer, area, Pane::Diagnosis, &title, app);
@@ -125,7 +98,7 @@ fn words(page: &DiagnosisPage, width: usize, app: &App) -> (paint::Lines, usize)
         let heading = if k == 0 { "Why" } else { "" };
         hang(&mut lines, heading, text, (width, theme.text, ""), app);
     }
-    let choices = choices(page);
+    let choices = page.tries.len();
     // Trials that end may shorten the page.
     let at = app
         .answer
@@ -202,132 +175,4 @@ fn below(lines: &mut paint::Lines, text: &str, width: usize, app: &App) {
         let text = format!("{:indent$}{part}", "");
         lines.push(Line::styled(text, app.theme.text));
     }
-}
-
-/// The consistent states side by side, as many as fit, including the selected one.
-fn answers(page: &DiagnosisPage, width: usize, app: &App, view: &View) -> paint::Lines {
-    let (theme, found) = (&app.theme, &page.found);
-    let (Some(census), Some(problem)) = (&found.census, &found.problem) else {
-        return Vec::new();
-    };
-    let count = census.answers.len();
-    if count == 0 {
-        return Vec::new();
-    }
-    // Where there are lines of Try, those are selected.
-    let selects = page.tries.is_empty();
-    let at = if selects {
-        app.answer.min(count - 1)
-    } else {
-        0
-    };
-    let fit = (width.saturating_sub(NAME + 2) / CELL).clamp(1, count);
-    let first = (at + 1).saturating_sub(fit);
-    let shown = first..(first + fit).min(count);
-    let mut head = vec![Span::styled(
-        format!(" {:<NAME$} ", "consistent"),
-        theme.heading,
-    )];
-    for number in shown.clone() {
-        let style = if selects && number == at {
-            theme.selected
-        } else {
-            theme.heading
-        };
-        let mark = if selects && number == at { "▸" } else { " " };
-        let text = format!("{mark}{} ", number + 1);
-        let rest = format!(
-            "{:<width$}",
-            " F_n       F_t       gap/slip",
-            width = CELL - 3
-        );
-        head.extend([Span::styled(text, style), Span::styled(rest, theme.faint)]);
-    }
-    let mut lines = vec![Line::default(), Line::from(head)];
-    let listed = listed(census, problem.nodes.len());
-    for &place in &listed {
-        let node = &problem.nodes[place];
-        let differs = differs(census, place);
-        let name = paint::cut(view.slave(node.slave), NAME);
-        let mark = if differs { "*" } else { " " };
-        let style = if differs { theme.strong } else { theme.text };
-        let mut spans = vec![Span::styled(
-            format!("{mark}{} ", shown::padded(&name, NAME)),
-            style,
-        )];
-        for number in shown.clone() {
-            let answer = &census.answers[number].answer.nodes[place];
-            spans.extend(cell(answer, app, view));
-        }
-        lines.push(Line::from(spans));
-    }
-    let left = problem.nodes.len() - listed.len();
-    if left > 0 {
-        let all = (0..problem.nodes.len()).filter(|&place| differs(census, place));
-        let text = if all.count() > listed.len() {
-            format!(" and {left} more")
-        } else {
-            format!(" and {left} more, the same in all states")
-        };
-        lines.push(Line::styled(text, theme.faint));
-    }
-    let more = if !census.exact {
-        format!(" at least {count} in all;")
-    } else if count > fit {
-        format!(" {count} in all;")
-    } else {
-        String::new()
-    };
-    let text = if selects {
-        format!(
-            "{more} Up and Down select, Enter starts from it (:start-from {})",
-            at + 1
-        )
-    } else {
-        format!("{more} :start-from N starts from state N")
-    };
-    lines.push(Line::styled(format!(" {}", text.trim_start()), theme.faint));
-    lines
-}
-
-/// Indices of the listed nodes: all if they fit, otherwise first those in which the states differ.
-fn listed(census: &Census, nodes: usize) -> Vec<usize> {
-    let mut listed: Vec<usize> = (0..nodes).collect();
-    if nodes > MOST_LISTED {
-        listed.sort_by_key(|&place| !differs(census, place));
-        listed.truncate(MOST_LISTED);
-        listed.sort_unstable();
-    }
-    listed
-}
-
-/// Whether the consistent states differ at a node.
-fn differs(census: &Census, place: usize) -> bool {
-    let mut all = census
-        .answers
-        .iter()
-        .map(|found| found.answer.nodes[place].assumed);
-    let first = all.next();
-    all.any(|assumed| Some(assumed) != first)
-}
-
-fn cell(answer: &NodeAnswer, app: &App, view: &View) -> [Span<'static>; 2] {
-    let mode = answer.assumed.mode();
-    let letter = match answer.assumed {
-        stickslip_core::interface::problem::AssumedMode::Plus => "S+",
-        stickslip_core::interface::problem::AssumedMode::Minus => "S-",
-        stickslip_core::interface::problem::AssumedMode::Free => "F ",
-        stickslip_core::interface::problem::AssumedMode::Fixed => "X ",
-    };
-    let last = match mode {
-        stickslip_core::Mode::Free => answer.gap,
-        _ => answer.slip,
-    };
-    let round_off = view.round_off();
-    let [f_n, f_t] = [answer.f_n, answer.f_t].map(|force| round_off.force(force));
-    let numbers = [f_n, f_t, round_off.length(last)].map(|value| number::fixed_width(value, 10));
-    [
-        Span::styled(format!(" {letter}"), app.theme.lit(mode)),
-        Span::raw(format!(" {:<width$}", numbers.concat(), width = CELL - 4)),
-    ]
 }

@@ -111,10 +111,7 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         let (end, style) = end(strip.kind, app);
         buffer.set_string(column.x, below, end, style);
     }
-    for column in &columns {
-        bracket(buffer, inner, below + 1, column, &columns, app, view);
-    }
-    finished_cycles(buffer, inner, below + 1, &columns, app, view);
+    brackets(buffer, inner, below + 1, &columns, app, view);
 }
 
 /// Screen column of the first iteration, and the visible iterations.
@@ -334,68 +331,39 @@ fn end(kind: PointKind, app: &App) -> (&'static str, Style) {
     }
 }
 
-/// The bracket under the last period of a cycle that ends in this column.
-fn bracket(
-    buffer: &mut Buffer,
-    inner: Rect,
-    y: u16,
-    column: &Column,
-    columns: &[Column],
-    app: &App,
-    view: &View,
-) {
-    let event = view.frames[column.at].event.as_deref();
-    let cycle = match event.map(|event| &event.outcome) {
-        Some(
-            Outcome::Failed(Failure::Cycle(cycle))
-            | Outcome::Damped { cycle, .. }
-            | Outcome::StrategyChange {
-                why: Failure::Cycle(cycle),
-                ..
-            },
-        ) if view.frames[column.at].intervention.is_none() => cycle,
-        _ => return,
-    };
-    let first = (column.at + 1).saturating_sub(cycle.period as usize);
-    let from = columns
-        .iter()
-        .find(|column| column.at >= first)
-        .map_or(column.x, |column| column.x);
-    let text = format!("{}-cycle", cycle.period);
-    let ends = (from, column.x);
-    columns::bracket(buffer, inner.right(), y, ends, &text, app.theme.bad);
-}
-
-/// Brackets under the first periods of a finished run's cycles.
-fn finished_cycles(
-    buffer: &mut Buffer,
-    inner: Rect,
-    y: u16,
-    columns: &[Column],
-    app: &App,
-    view: &View,
-) {
-    let cycles = view.model.finished.iter().flat_map(|run| &run.cycles);
-    let mut free = inner.x;
-    for cycle in cycles {
-        // Step 0 is the start, before the first iteration.
-        let mut shown = columns.iter().filter(|column| {
-            let iteration = column.at.checked_sub(1);
-            iteration.is_some_and(|iteration| cycle.contains(&iteration))
-        });
-        let Some(from) = shown.next().filter(|from| from.x >= free) else {
-            continue;
+/// Brackets under the last periods of cycles that end in a column, and under the first ones of a finished run's.
+fn brackets(buffer: &mut Buffer, inner: Rect, y: u16, columns: &[Column], app: &App, view: &View) {
+    let ended = columns.iter().filter_map(|column| {
+        let frame = &view.frames[column.at];
+        let event = frame
+            .event
+            .as_ref()
+            .filter(|_| frame.intervention.is_none());
+        let (Outcome::Failed(Failure::Cycle(cycle))
+        | Outcome::Damped { cycle, .. }
+        | Outcome::StrategyChange {
+            why: Failure::Cycle(cycle),
+            ..
+        }) = &event?.outcome
+        else {
+            return None;
         };
-        let to = shown.next_back().unwrap_or(from);
-        let text = format!("{}-cycle", cycle.len());
-        columns::bracket(
-            buffer,
-            inner.right(),
-            y,
-            (from.x, to.x),
-            &text,
-            app.theme.bad,
-        );
-        free = to.x + 3 + text.len() as u16;
+        let end = column.at + 1;
+        Some(end.saturating_sub(cycle.period as usize)..end)
+    });
+    let finished = view.model.finished.iter().flat_map(|run| &run.cycles);
+    // Step 0 is the start, before the first iteration.
+    let finished = finished.map(|cycle| cycle.start + 1..cycle.end + 1);
+    let mut free = inner.x;
+    for steps in ended.chain(finished) {
+        let mut shown = columns.iter().filter(|column| steps.contains(&column.at));
+        let Some(from) = shown.next() else { continue };
+        if view.is_finished() && from.x < free {
+            continue;
+        }
+        let to = shown.next_back().unwrap_or(from).x;
+        let text = format!("{}-cycle", steps.len());
+        columns::bracket(buffer, inner.right(), y, (from.x, to), &text, app.theme.bad);
+        free = to + 3 + text.len() as u16;
     }
 }

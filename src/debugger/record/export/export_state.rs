@@ -32,8 +32,6 @@ pub struct ExportState<'a> {
     pub strips: &'a [Strip],
     /// The state at the start of the last major iteration; at the end of the history, its problem is exported.
     pub last_major: Option<&'a State>,
-    /// Description of the end, if the run failed; otherwise empty.
-    pub ended: String,
     /// Whether the frozen problem is requested, for kinds that offer a choice.
     pub frozen: bool,
     /// What a picture contains, and its size.

@@ -17,7 +17,6 @@
 use crate::explain::core::Core;
 use crate::explain::cycles;
 use crate::explain::names;
-use crate::history::verdicts;
 use crate::refusal::{Refusal, refusal};
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -112,17 +111,7 @@ pub fn core(model: &Model, origin: &Origin, cycle: &Cycle, core: &Core) -> Resul
         "Core of {}: {}, period {}",
         origin.scene, names, core.cycle.period
     );
-    let text = text(model, &core.on_cycle(), title, head.into())?;
-    match cycle_of(&text)? {
-        Some(found) if verdicts::is_same_cycle(&found, &core.cycle) => Ok(text),
-        other => {
-            let found = other.map_or("no cycle".to_owned(), |c| format!("period {}", c.period));
-            Err(refusal!(
-                "the core cycles with period {period}, but the exported scene has {found}",
-                period = core.cycle.period
-            ))
-        }
-    }
+    text(model, &core.on_cycle(), title, head.into())
 }
 
 /// The nodes that can be written: those that face a surface and can move.
@@ -477,19 +466,14 @@ fn wrapped(text: &str) -> impl Iterator<Item = String> {
     lines.map(|(k, line)| if k == 0 { line } else { format!("  {line}") })
 }
 
-/// The solver of an exported file at its start.
-fn stepper(text: &str) -> Result<Stepper, Refusal> {
-    let scene = Scene::from_text("exported scene", text, &[])?;
-    Ok(Stepper::new(Arc::new(scene.model)))
-}
-
 /// Steps a file and its problem together until the minor iterations settle, cycle or fail. Returns the largest
 /// relative difference of a force or length.
 ///
 /// # Errors
 /// If the two differ.
 pub fn compared(problem: &InterfaceProblem, text: &str) -> Result<f64, Refusal> {
-    let mut stepper = stepper(text)?;
+    let scene = Scene::from_text("exported scene", text, &[])?;
+    let mut stepper = Stepper::new(Arc::new(scene.model));
     // For bonds, the file contains only the contact points, not the nodes behind them.
     let mut touching = problem.clone();
     let kinematics = touching
@@ -563,17 +547,4 @@ fn difference(problem: &InterfaceProblem, a: &ContactRecord, b: &ContactRecord) 
     ]
     .into_iter()
     .fold(0.0, f64::max)
-}
-
-/// The cycle of the first minor iterations of a scene; `None` if they do not cycle.
-fn cycle_of(text: &str) -> Result<Option<Cycle>, Refusal> {
-    let mut stepper = stepper(text)?;
-    while let Some(event) = stepper.step() {
-        match &event.outcome {
-            Outcome::Minor => {}
-            Outcome::Failed(Failure::Cycle(cycle)) => return Ok(Some(cycle.clone())),
-            _ => return Ok(None),
-        }
-    }
-    Ok(None)
 }

@@ -11,8 +11,8 @@ use super::window::{FORCE, Window};
 use crate::RoundOff;
 use crate::explain::conditions::{Given, conditions};
 use crate::explain::model_facts::{diagonal, solid_elements};
-use crate::explain::names;
 use crate::explain::outline::{self, Bounds, Point, Projection, curve, extent};
+use crate::explain::{failures, names};
 use crate::refusal::Refusal;
 use stickslip_core::plane::distance;
 use stickslip_core::{
@@ -130,9 +130,10 @@ fn caption(shown: &ExportState) -> String {
     let at = names::position(event.position);
     let load = shortest(event.load_factor);
     let what = match (&event.outcome, &shown.state.status) {
-        (_, Status::Failed(_)) | (Outcome::Failed(_), _) => {
-            format!("last state; the increment failed: {}", shown.ended)
-        }
+        (_, Status::Failed(failure)) | (Outcome::Failed(failure), _) => format!(
+            "last state; the increment failed: {}",
+            failures::describe(&shown.scene.model, failure)
+        ),
         (Outcome::Increment { .. }, Status::Finished) => "accepted; end of the history".to_owned(),
         (Outcome::Increment { .. }, _) => "accepted".to_owned(),
         (Outcome::Major { .. } | Outcome::Refused { .. }, _) => "not in equilibrium yet".to_owned(),
@@ -146,12 +147,7 @@ fn caption(shown: &ExportState) -> String {
         ) => "the increment restarts".to_owned(),
         _ => "modes or T_max still change".to_owned(),
     };
-    let more = match shown.ended.as_str() {
-        "" => String::new(),
-        _ if matches!(shown.state.status, Status::Failed(_)) => String::new(),
-        ended => format!("; {ended}"),
-    };
-    let text = format!("{at}, load {load}: {what}{more}");
+    let text = format!("{at}, load {load}: {what}");
     if text.ends_with('…') {
         text
     } else {

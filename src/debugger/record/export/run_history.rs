@@ -83,7 +83,6 @@ impl<'a> RunHistory<'a> {
             event,
             strips: &self.strips,
             last_major: Some(&self.last_major),
-            ended: String::new(),
             frozen: false,
             picture,
             events: &self.events,

@@ -2,7 +2,6 @@
 
 use super::Helper;
 use crate::explain::attached;
-use crate::explain::facts::Fact;
 use crate::explain::remedies;
 use crate::explain::try_list::TryLine;
 use crate::session::background_messages::{BackgroundReply, Reported};
@@ -78,9 +77,6 @@ impl Helper {
             .filter(|_| self.offers.force)
             .map(|text| TryLine::by_hand(text))
             .collect();
-        // These trials walk the problem; the solver itself may do something else.
-        let offered = |fact: &Fact| !fact.text.starts_with("tried: ");
-        found.facts.retain(offered);
         DiagnosisPage::attached(known, found, tries)
     }
 
