@@ -60,6 +60,8 @@ pub struct Debugger {
     pub session: Option<Session>,
     /// Requests to the event loop from queued keys.
     outside: VecDeque<TerminalRequest>,
+    /// Whether the program ends when the requested files are written.
+    leaves: bool,
     /// Start time of the current computation.
     begun: Instant,
     /// Number of frames in the session at the last draw.
@@ -92,6 +94,7 @@ impl Debugger {
             app,
             session,
             outside: VecDeque::new(),
+            leaves: false,
             begun: Instant::now(),
             frames: 0,
             keeps: false,
@@ -207,6 +210,11 @@ impl Debugger {
     /// Carries out an effect, unless only the event loop can.
     pub fn carry_out(&mut self, effect: Effect) -> Option<TerminalRequest> {
         match effect {
+            Effect::Quit if self.is_exporting() && !self.leaves => {
+                self.leaves = true;
+                let wait = "leaving when the file is written; again: now, without the file";
+                self.app.say(wait);
+            }
             Effect::Quit => return Some(TerminalRequest::Quit),
             Effect::Suspend => return Some(TerminalRequest::Suspend),
             Effect::Redraw => return Some(TerminalRequest::Redraw),
@@ -534,6 +542,11 @@ impl Debugger {
         self.app.say(message);
     }
 
+    fn is_exporting(&self) -> bool {
+        let session = self.session.as_ref();
+        session.is_some_and(|session| session.background().is_exporting())
+    }
+
     /// Whether the solver has results that have not been collected.
     pub fn is_behind(&self) -> bool {
         self.session.as_ref().is_some_and(Session::is_behind)
@@ -559,6 +572,9 @@ impl Debugger {
         let seen = session.background_mut().gather();
         if let Some(exported) = session.background_mut().exported() {
             self.app.report(exported);
+            if self.leaves && !session.background().is_exporting() {
+                self.outside.push_back(TerminalRequest::Quit);
+            }
         }
         let reply = session.poll();
         let said = reply.is_some();

@@ -291,3 +291,13 @@ fn a_terminal_that_goes_away_while_it_is_drawn_on_ends_the_program_as_a_hangup_d
         assert_eq!(status.signal(), Some("Hangup"), "{status}");
     }
 }
+
+#[test]
+fn q_right_after_an_export_leaves_when_the_file_is_written() {
+    let mut session = open(OSCILLATES);
+    session.type_and_see("s", "minor 1");
+    session.keys(":export a.svg\rq");
+    let file = session.directory.path().join("a.svg");
+    assert!(session.end().success());
+    assert!(file.exists());
+}

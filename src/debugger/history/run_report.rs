@@ -5,6 +5,7 @@ use super::frame::Frame;
 use super::strip::{PointKind, Strip};
 use crate::explain::facts::{Fact, Part};
 use crate::explain::headline::brief;
+use crate::explain::judged;
 use crate::explain::strain;
 use crate::explain::unforced::PlaceLog;
 use stickslip_core::fem::deformation::deformation;
@@ -59,6 +60,7 @@ pub fn run_report(model: &Model, strips: &[Strip], frames: &[Frame]) -> (String,
             })
         )
     };
+    lines.extend(against_a_law(model, strips, frames));
     lines.extend(loads(&jumped).map(|loads| format!("jumps to another branch at load {loads}")));
     lines.extend(loads(&unstable).map(|loads| format!("becomes unstable at load {loads}")));
     if let Some(last) = frames.last() {
@@ -73,6 +75,25 @@ pub fn run_report(model: &Model, strips: &[Strip], frames: &[Frame]) -> (String,
         (cost.seconds, format!("{:.1} s", cost.seconds))
     }));
     (head, Fact::all(Part::Report, lines))
+}
+
+/// The accepted increments whose states break a law, and the first finding that is still in memory.
+fn against_a_law(model: &Model, strips: &[Strip], frames: &[Frame]) -> Option<String> {
+    let found = strips.iter().zip(frames).filter_map(|(strip, frame)| {
+        match &frame.event.as_ref()?.outcome {
+            Outcome::Increment {
+                marked: Some(found),
+                ..
+            } => Some((strip.load_factor, found)),
+            _ => None,
+        }
+    });
+    let (_, first) = found.clone().next()?;
+    let loads = first_of(found.map(|(load, _)| shortest(load)), MOST, ", ");
+    let finding = judged::finding(model, first);
+    Some(format!(
+        "states that break a law at load {loads}; first: {finding}"
+    ))
 }
 
 /// The motions without a force on a line.

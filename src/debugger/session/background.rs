@@ -103,6 +103,8 @@ pub struct Background {
     /// By position: the requested nodes, and the result.
     examinations: HashMap<LinePlace, (Vec<usize>, Option<DiagnosisPage>)>,
     exported: Option<Result<String, Refusal>>,
+    /// Number of requested exports without a result.
+    exporting: usize,
     tried: Option<RemedyTrials>,
     trying: bool,
     /// Examinations running or queued.
@@ -169,6 +171,7 @@ impl Background {
             worst: Memo::default(),
             examinations: HashMap::new(),
             exported: None,
+            exporting: 0,
             tried: None,
             trying: false,
             examining: 0,
@@ -285,7 +288,13 @@ impl Background {
 
     /// Requests an export.
     pub(super) fn ask_export(&mut self, export: Export) {
+        self.exporting += 1;
         self.send(BackgroundRequest::Export(export));
+    }
+
+    /// Whether a requested file is not written yet.
+    pub fn is_exporting(&self) -> bool {
+        self.exporting > 0
     }
 
     /// Result of the latest export; returned once.
@@ -388,6 +397,7 @@ impl Background {
             }
             BackgroundReply::Exported(result) => {
                 self.exported = Some(result);
+                self.exporting -= 1;
                 self.waiting -= 1;
             }
             BackgroundReply::Trying { all, now } => {
