@@ -226,6 +226,7 @@ impl Differences {
         if left != right {
             let both = [left, right].map(|value| match value {
                 Value::Null => "-".to_owned(),
+                Value::Object(_) if left.is_null() || right.is_null() => "there".to_owned(),
                 Value::String(text) => text.clone(),
                 other => other.to_string(),
             });
