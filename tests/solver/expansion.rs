@@ -94,7 +94,7 @@ fn a_free_body_is_longer_by_the_sum_of_its_strains_at_every_load() {
     let text = "(title: \"t\", nodes: [Block(id: \"a\", corners: [(0, 0), (1, 1)], elements: (1, 1), element: quad4)],
         materials: [Elastic(id: \"m\", E: 100, nu: 0.3, law: svk, plane: stress)], bodies: [Solid(id: \"a\", mesh: \"a\", material: \"m\")],
         supports: [(node: \"a.left\", fix: [x]), (node: \"a.bottom\", fix: [y])],
-        loads: [Expansion(on: \"a\", strain: 0.1, scale: [(0, 0), (1, -1), (2, 2)]), Expansion(on: \"a\", strain: 0.2)],
+        loads: [Expansion(on: \"a\", strain: 0.05, scale: [(0, 0), (1, -1), (2, 2)]), Expansion(on: \"a\", strain: 0.1)],
         history: (path: [0, 2, -0.5], increment: 0.25),
         monitors: [(name: \"x\", of: Displacement(node: \"a.right.1\", component: x))])";
     let run = finished(&read(text));
@@ -106,7 +106,7 @@ fn a_free_body_is_longer_by_the_sum_of_its_strains_at_every_load() {
         } else {
             3.0 * load - 4.0
         };
-        let strain = 0.1 * first + 0.2 * load;
+        let strain = 0.05 * first + 0.1 * load;
         assert!((accepted.monitors["x"] - strain).abs() < 1e-10, "{load}");
     }
 }

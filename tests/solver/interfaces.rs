@@ -335,7 +335,7 @@ fn contacts_in_space_are_read_and_what_they_cannot_have_is_refused() {
         (("[-1, 0.25, 0]", "[-1, 0.25, 0, 1]"), "it has 4 numbers"),
         (
             ("[0, 0, 1]]", "[0, 0, 1], [1, 0, 0]]"),
-            "1:119: matrix: it has 4 rows; 3 are needed",
+            "a.ron:2:19: matrix: it has 4 rows; 3 are needed",
         ),
         (("[0, 0, 1]]", "]"), "it has 2 rows; 3 are needed"),
         (
@@ -345,7 +345,7 @@ fn contacts_in_space_are_read_and_what_they_cannot_have_is_refused() {
         (("gap: 0.5", "start: sliding"), "a contact starts free"),
         (("gap: 0.5", "state: (f_n: 1)"), "a contact starts free"),
         (
-            ("free: ", "history: (path: [0, 2]), free: "),
+            ("free: ", "history: (path: [0, 2], increment: 1), free: "),
             "solved in one increment",
         ),
         (("free: ", "spacing: 2, free: "), "nor spacing"),

@@ -83,7 +83,9 @@ impl Stepper {
         let [linear, nonlinear] = REPORTED;
         let least = if constant { linear } else { nonlinear };
         let reported = least.max(settings.tolerance) * after.scale;
+        // A damped motion balances other forces, too, and what it ends with is judged at rest.
         let turned = !at_limit
+            && self.now.state.recovery.motion.is_none()
             && after.correction > STILL
             && differ(&self.event.nodes, &self.now.state.nodes, reported);
         let unfinished =

@@ -3,7 +3,7 @@
 use super::super::limits;
 use crate::Spec;
 use crate::format::error::{Fault, at, bail, fault};
-use crate::format::spec::History;
+use crate::format::spec::{History, LoadSpec};
 use crate::sig4;
 use stickslip_core::model::Factor;
 use stickslip_core::plane::range;
@@ -101,7 +101,8 @@ fn of_legs(history: &History) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Rejects an amplitude with a bend within the path of an arc, which follows loads in proportion to the load factor.
+/// Rejects an amplitude of a prescribed displacement with a bend within the path of an arc, which follows these displacements in
+/// proportion to the load factor.
 pub(super) fn check_bends(spec: &Spec) -> Result<(), Fault> {
     let History { path, control, .. } = &spec.history;
     if *control != Control::Arc {
@@ -109,7 +110,10 @@ pub(super) fn check_bends(spec: &Spec) -> Result<(), Fault> {
     }
     let [low, high] = range(path.iter().copied());
     for (k, load) in spec.loads.iter().enumerate() {
-        let scale = Factor(load.scale().to_vec());
+        let LoadSpec::Displacement { scale, .. } = load else {
+            continue;
+        };
+        let scale = Factor(scale.clone());
         let slope = |from: f64, to: f64| (scale.at(to) - scale.at(from)) / (to - from);
         let mut points = vec![low];
         points.extend(
@@ -129,7 +133,7 @@ pub(super) fn check_bends(spec: &Spec) -> Result<(), Fault> {
         if let Some(at) = bend {
             bail!(
                 at!["loads", k, "scale"],
-                "the amplitude bends at the load factor {}, and control: arc needs loads in proportion to it; use control: load",
+                "the amplitude bends at the load factor {}, and control: arc needs displacements in proportion to it; use control: load",
                 sig4(at[1])
             );
         }

@@ -7,7 +7,7 @@ use super::super::nodes::Names;
 use super::super::nodes::checks::unique;
 use super::bodies::{chain, check_chain};
 use super::laws;
-use super::meeting_ends::{self, coincide};
+use super::meeting_ends::{self, coincide, end_nodes};
 use crate::Spec;
 use crate::format::contact_law::FrictionSpec;
 use crate::format::error::{Fault, Path, at, bail, none_called, quoted};
@@ -124,13 +124,6 @@ pub(super) fn surfaces(
     }
     limits::entries("surfaces", all.made.len())?;
     Ok(all)
-}
-
-/// The nodes where a chain begins and where it ends.
-pub(super) fn end_nodes(elements: &[Vec<usize>]) -> [Option<usize>; 2] {
-    let first = elements.first().and_then(|nodes| nodes.first());
-    let last = elements.last().and_then(|nodes| nodes.last());
-    [first.copied(), last.copied()]
 }
 
 /// Whether no chain, of which these are the ends, continues at the beginning and at the end of one of them.

@@ -2,15 +2,21 @@
 //! point, in a concave corner, each continues past it into the body of the other, so that they cross
 //! ([`stickslip_core::contact::crossing`]).
 
-use super::interface::{Surfaces, end_nodes};
 use stickslip_core::contact::crossing::ends_in_corner;
 use stickslip_core::plane::distance;
-use stickslip_core::{Contact, Node};
+use stickslip_core::{Contact, Node, Surface};
 
 /// Distance of ends that coincide, relative to the scene's length.
 const SAME: f64 = 1e-9;
 /// How far a surface continues past a corner, in units of ξ of its end element.
 const PAST: f64 = 1.0;
+
+/// The nodes where a chain begins and where it ends.
+pub(super) fn end_nodes(elements: &[Vec<usize>]) -> [Option<usize>; 2] {
+    let first = elements.first().and_then(|nodes| nodes.first());
+    let last = elements.last().and_then(|nodes| nodes.last());
+    [first.copied(), last.copied()]
+}
 
 /// Whether two nodes are at the same place.
 pub(super) fn coincide(nodes: &[Node], [a, b]: [usize; 2], length: f64) -> bool {
@@ -33,10 +39,11 @@ pub(super) fn close(elements: &mut [Vec<usize>], nodes: &[Node], on_body: &[bool
     }
 }
 
-/// Lets the rigid surfaces that end in a concave corner cross there; surfaces with prescribed nodes, which may part, stay as they
+/// Lets the rigid surfaces, of these entries of the scene's list, that end in a concave corner cross there; surfaces with prescribed nodes, which may part, stay as they
 /// are.
 pub(super) fn cross(
-    surfaces: &mut Surfaces,
+    surfaces: &mut [Surface],
+    listed: &[usize],
     slaves: &[Contact],
     nodes: &[Node],
     is_prescribed: impl Fn(usize) -> bool,
@@ -58,23 +65,23 @@ pub(super) fn cross(
     pairs.sort_unstable();
     pairs.dedup();
     for pair in pairs {
-        let both = pair.map(|k| &surfaces.made[k]);
+        let both = pair.map(|k| &surfaces[k]);
         let stays = both
             .iter()
             .all(|s| s.rigid && !s.endless && !s.nodes().any(|&node| is_prescribed(node)));
-        if !stays || surfaces.listed[pair[0]] == surfaces.listed[pair[1]] {
+        if !stays || listed[pair[0]] == listed[pair[1]] {
             continue;
         }
         let own = both.map(|surface| end_nodes(&surface.elements));
         for ends in [[0, 0], [0, 1], [1, 0], [1, 1]] {
-            let both = pair.map(|k| &surfaces.made[k]);
+            let both = pair.map(|k| &surfaces[k]);
             let meet = [0, 1].map(|k| own[k][ends[k]]);
             if let [Some(a), Some(b)] = meet
                 && coincide(nodes, [a, b], length)
                 && ends_in_corner(both, ends, &at)
             {
                 for (k, end) in pair.into_iter().zip(ends) {
-                    let past = &mut surfaces.made[k].past_ends[end];
+                    let past = &mut surfaces[k].past_ends[end];
                     *past = past.max(PAST);
                 }
             }

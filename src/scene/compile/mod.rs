@@ -29,6 +29,7 @@ use super::nodes::Names;
 use crate::Spec;
 use crate::format::error::{Fault, at, bail};
 pub use history::increments;
+use interface::Surfaces;
 use layout::Layout;
 pub(crate) use layout::Loads;
 pub(crate) use renewed::{Choices, Compiled, Groups, renewed};
@@ -119,8 +120,18 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
         .filter_map(|p| Some(dofs.node_of(p.dof)?.0))
         .collect();
     let is_moved = |node: usize| moved.contains(&node);
-    meeting_ends::cross(&mut surfaces, &slaves, &names.nodes, is_moved, length);
-    let mut surfaces = surfaces.made;
+    let Surfaces {
+        made: mut surfaces,
+        listed,
+    } = surfaces;
+    meeting_ends::cross(
+        &mut surfaces,
+        &listed,
+        &slaves,
+        &names.nodes,
+        is_moved,
+        length,
+    );
     point_force::find_gives(
         spec.settings.point_force,
         &bodies,

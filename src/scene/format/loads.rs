@@ -103,17 +103,3 @@ described! {
 /// Piecewise-linear amplitude of a load: points `(load factor of the scene, factor of this load)` with ascending load factors;
 /// constant beyond its ends. Without points, the load factor itself.
 pub type Scale = Vec<(f64, f64)>;
-
-impl LoadSpec {
-    /// The points of its amplitude.
-    pub fn scale(&self) -> &[(f64, f64)] {
-        let (LoadSpec::Force { scale, .. }
-        | LoadSpec::Moment { scale, .. }
-        | LoadSpec::Traction { scale, .. }
-        | LoadSpec::Pressure { scale, .. }
-        | LoadSpec::Volume { scale, .. }
-        | LoadSpec::Expansion { scale, .. }
-        | LoadSpec::Displacement { scale, .. }) = self;
-        scale
-    }
-}
