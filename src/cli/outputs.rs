@@ -1,7 +1,7 @@
 //! Output of sweeps: tables, pictures, progress, and tables for people.
 
 use super::base::{Error, distinct};
-use super::sink::Sink;
+use super::sink::{Sink, spare_inputs};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{self, IsTerminal};
 use std::num::NonZeroUsize;
@@ -97,7 +97,10 @@ impl Outputs {
             ("--svg", svg.as_deref()),
             ("--png", png.as_deref()),
         ])?;
-        let output = |path: &PathBuf| Output::create(path, args.force);
+        let output = |path: &PathBuf| -> Result<Output, Error> {
+            spare_inputs(&path.to_string_lossy())?;
+            Ok(Output::create(path, args.force)?)
+        };
         let csv = args.csv.as_deref().map(|to| Sink::open(to, args.force));
         Ok(Outputs {
             csv: csv.transpose()?,

@@ -4,7 +4,7 @@ use super::base::{Error, OutputState, distinct, spare_input};
 use super::grids::{GridInterval, Grids};
 use super::json::JsonArgs;
 use super::sink::Sink;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use stickslip_core::Model;
 use stickslip_debugger::record::table;
 use stickslip_platform::files::Output;
@@ -61,14 +61,15 @@ impl RunOutputs {
     /// If a file exists and must not be overwritten, cannot be written, or is named twice.
     pub fn open(args: &RunOutputArgs, scene: &Scene, force: bool) -> Result<RunOutputs, Error> {
         let snapshot = args.snapshot.as_ref().map(|path| path.to_string_lossy());
-        distinct(&[
+        let named = [
             ("--csv", args.csv.as_deref()),
             ("--trace", args.trace.as_deref()),
             ("--json", args.json.to()),
             ("--snapshot", snapshot.as_deref()),
-        ])?;
-        if let Some(snapshot) = &args.snapshot {
-            spare_input(&scene.name, snapshot)?;
+        ];
+        distinct(&named)?;
+        for file in named.iter().filter_map(|(_, file)| *file) {
+            spare_input(&scene.name, Path::new(file))?;
         }
         let sink = |to: &Option<String>| match to {
             Some(to) => Sink::open(to, force).map(Some),

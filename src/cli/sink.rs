@@ -16,7 +16,21 @@ pub enum Sink {
 /// Whether a file has the extension of one that the program reads, and never of a table or record.
 pub fn is_input(file: &str) -> bool {
     let extension = Path::new(file).extension();
-    extension.is_some_and(|own| own == "ron" || own == "inp")
+    extension.is_some_and(|own| {
+        ["ron", "inp"]
+            .iter()
+            .any(|known| own.eq_ignore_ascii_case(known))
+    })
+}
+
+/// Refuses a name that belongs to a scene, deck or snapshot.
+pub fn spare_inputs(file: &str) -> Result<(), Error> {
+    if is_input(file) {
+        return Err(usage!(
+            "{file}: a scene, deck or snapshot has such a name, but something else is to be written; name another file"
+        ));
+    }
+    Ok(())
 }
 
 impl Sink {
@@ -25,11 +39,7 @@ impl Sink {
         if to == "-" {
             return Ok(Sink::Standard);
         }
-        if is_input(to) {
-            return Err(usage!(
-                "{to}: a scene, deck or snapshot has such a name, but a table or record is to be written; name another file"
-            ));
-        }
+        spare_inputs(to)?;
         let output = Output::create(Path::new(to), overwrite)?;
         Ok(Sink::File(Box::new(output)))
     }

@@ -74,10 +74,10 @@ impl NamedSides {
                     Some(
                         "these are not sides of the elements of a solid or beam, with all their nodes",
                     )
-                } else if !side.iter().any(|node| nodes.contains(node)) {
-                    Some("no node of one of these sides is among the pair's nodes")
                 } else if touched().any(|nodes| ascending(nodes) == *side) {
                     Some("a side of a surface that the nodes touch cannot be a slave side as well")
+                } else if !side.iter().any(|node| nodes.contains(node)) {
+                    Some("no node of one of these sides is among the pair's nodes")
                 } else {
                     None
                 }

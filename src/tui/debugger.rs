@@ -470,6 +470,7 @@ impl Debugger {
             return grown;
         };
         (self.measuring, self.app.measuring) = (None, None);
+        self.leaves = false;
         self.app.say("");
         let result = result.map_err(Refusal::new);
         match result.and_then(ChartPage::from_chart) {
@@ -571,6 +572,7 @@ impl Debugger {
         self.app.unkept = session.journal().lost().is_some();
         let seen = session.background_mut().gather();
         if let Some(exported) = session.background_mut().exported() {
+            self.leaves &= exported.is_ok();
             self.app.report(exported);
             if self.leaves && !session.background().is_exporting() {
                 self.outside.push_back(TerminalRequest::Quit);

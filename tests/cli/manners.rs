@@ -335,6 +335,7 @@ fn no_output_replaces_the_input_or_writes_a_table_into_a_scene() {
     let here = directory.path();
     let scene = std::fs::read_to_string(top("problems/osc-snap.ron")).unwrap();
     std::fs::write(here.join("a.ron"), &scene).unwrap();
+    std::fs::write(here.join("a"), &scene).unwrap();
     for line in [
         "run a.ron --csv a.ron",
         "run a.ron --trace a.ron",
@@ -345,10 +346,15 @@ fn no_output_replaces_the_input_or_writes_a_table_into_a_scene() {
         "core a.ron -o a.ron",
         "study a.ron --vary settings.slip=step --csv a.ron",
         "map a.ron --over settings.majors=20,30 --csv a.ron",
+        "map a.ron --over settings.majors=20,30 --svg a.ron",
+        "run a --csv a",
+        "run a --json a",
     ] {
         let output = ran(here, &[&words(line)[..], &["--force"]].concat());
         assert_eq!(code(&output), 2, "{line}: {}", err(&output));
-        let kept = std::fs::read_to_string(here.join("a.ron")).unwrap();
-        assert_eq!(kept, scene, "{line}");
+        for file in ["a.ron", "a"] {
+            let kept = std::fs::read_to_string(here.join(file)).unwrap();
+            assert_eq!(kept, scene, "{line}");
+        }
     }
 }

@@ -400,25 +400,27 @@ fn surfaces_that_end_in_one_point_hold_a_node_like_one_chain() {
 
 #[test]
 fn a_chain_that_returns_to_its_start_is_closed() {
-    let scene = read(
+    for (arc, reverse) in [("from: 0, to: 360", false), ("from: 360, to: 0", true)] {
+        let scene = read(&format!(
         "(title: \"t\", nodes: [Node(id: \"p\", at: (1.05, -0.5)),
-            Arc(id: \"c\", center: (0, 0), radius: 1, from: 0, to: 360, elements: 12, per_element: 3)], materials: [],
+            Arc(id: \"c\", center: (0, 0), radius: 1, {arc}, elements: 12, per_element: 3)], materials: [],
           bodies: [Springs(id: \"k\", bars: [(nodes: [\"p\"], angle: 0, stiffness: 10), (nodes: [\"p\"], angle: 90, stiffness: 0.01)])],
-          surfaces: [(id: \"c\", along: \"c\")], slaves: [(nodes: [\"p\"], on: [\"c\"])], friction: (angle: 5),
+          surfaces: [(id: \"c\", along: \"c\", reverse: {reverse})], slaves: [(nodes: [\"p\"], on: [\"c\"])], friction: (angle: 5),
           loads: [Force(node: \"p\", x: -4, scale: [(0, 0), (1, 1)]),
                   Displacement(node: \"p\", component: y, value: 1, scale: [(0, 0), (1, 0), (2, 1)])],
           history: (path: [0, 1, 2], increment: 0.1),
           monitors: [(name: \"x\", of: Displacement(node: \"p\", component: x)), (name: \"y\", of: Displacement(node: \"p\", component: y)),
                      (name: \"free\", of: Modes(mode: free))])",
-    );
-    let accepted = finished(&scene).accepted;
-    let touching = accepted
-        .iter()
-        .filter(|state| state.monitors["free"] == 0.0);
-    assert!(touching.clone().count() > 10);
-    for state in touching {
-        let [x, y] = ["x", "y"].map(|name| state.monitors[name]);
-        let radius = (1.05 + x).hypot(y - 0.5);
-        assert!((radius - 1.0).abs() < 3e-4, "{}: {radius}", state.load);
+    ));
+        let accepted = finished(&scene).accepted;
+        let touching = accepted
+            .iter()
+            .filter(|state| state.monitors["free"] == 0.0);
+        assert!(touching.clone().count() > 10);
+        for state in touching {
+            let [x, y] = ["x", "y"].map(|name| state.monitors[name]);
+            let radius = (1.05 + x).hypot(y - 0.5);
+            assert!((radius - 1.0).abs() < 3e-4, "{}: {radius}", state.load);
+        }
     }
 }

@@ -136,8 +136,13 @@ fn sides_with_shared_or_fixed_nodes_are_integrated() {
     let shared = whole.replace("*SURFACE, NAME=UPPER\nE101, S1\n", two);
     let shared = shared.replace("UPPER, LOWER", "LEFT, LOWER\nRIGHT, LOWER");
     assert!(error(&shared, 100.0) < 1e-10);
+    // The groups of nodes have sides whose nodes are those of the other.
+    let by_nodes = shared.replace("SURFACE TO SURFACE", "NODE TO SURFACE");
+    Scene::from_text("job.inp", &by_nodes, &[]).unwrap_or_else(|error| panic!("{error}"));
     let fixed: String = (1..=10).map(|node| format!("{node}, 1, 2\n")).collect();
     let fixed = whole.replace("*STEP", &format!("{fixed}101, 1, 2\n*STEP"));
+    let by_nodes = fixed.replace("SURFACE TO SURFACE", "NODE TO SURFACE");
+    Scene::from_text("job.inp", &by_nodes, &[]).unwrap_or_else(|error| panic!("{error}"));
     let scene = Scene::from_text("job.inp", &fixed, &[]).unwrap_or_else(|error| panic!("{error}"));
     let areas = scene.model.contacts.iter().filter_map(|point| point.area);
     assert!((areas.sum::<f64>() - WIDTH).abs() < 1e-12);

@@ -317,11 +317,14 @@ impl State {
     }
 }
 
-/// Whether a prescribed displacement is not yet that of the load factor: along an arc, a solution may pass a bend of its amplitude.
+/// Whether a prescribed displacement is not yet that of the load factor: a solution along an arc may leave the range of the path, where
+/// its amplitude bends.
 fn lags(model: &Model, state: &State) -> bool {
-    let lag = |p: &Prescribed| p.value * p.scale.at(state.load_factor) - state.u[p.dof];
-    let mut prescribed = model.prescribed.iter();
-    state.way.is_some() && prescribed.any(|p| lag(p).abs() > NEAR * p.value.abs())
+    let is_late = |p: &Prescribed| {
+        let wanted = p.value * p.scale.at(state.load_factor);
+        (wanted - state.u[p.dof]).abs() > NEAR * wanted.abs().max(p.value.abs())
+    };
+    state.way.is_some() && model.prescribed.iter().any(is_late)
 }
 
 /// Whether the forces of the last minor iteration, along the directions frozen in it, differ from those of the state by more than

@@ -77,7 +77,7 @@ pub fn run_report(model: &Model, strips: &[Strip], frames: &[Frame]) -> (String,
     (head, Fact::all(Part::Report, lines))
 }
 
-/// The accepted increments whose states break a law, and the first finding that is still in memory.
+/// The accepted increments whose states break a law, as far as their events are still in memory, with the first finding.
 fn against_a_law(model: &Model, strips: &[Strip], frames: &[Frame]) -> Option<String> {
     let found = strips.iter().zip(frames).filter_map(|(strip, frame)| {
         match &frame.event.as_ref()?.outcome {

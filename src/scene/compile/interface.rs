@@ -11,7 +11,7 @@ use super::meeting_ends::{self, coincide, end_nodes};
 use crate::Spec;
 use crate::format::contact_law::FrictionSpec;
 use crate::format::error::{Fault, Path, at, bail, none_called, quoted};
-use crate::format::spec::{Nodes, Side, SlaveSpec};
+use crate::format::spec::{LoadSpec, Nodes, Side, SlaveSpec};
 use crate::joined;
 use std::collections::HashSet;
 use stickslip_core::contact::element::closed;
@@ -68,7 +68,8 @@ pub(super) fn surfaces(
                 elements.reverse();
                 elements.iter_mut().for_each(|element| element.reverse());
             }
-            meeting_ends::close(elements, &names.nodes, on_body, length);
+            let stays = |ends| moves_alike(spec, names, ends);
+            meeting_ends::close(elements, &names.nodes, on_body, stays, length);
         }
         if surface.cut {
             pieces = pieces
@@ -124,6 +125,16 @@ pub(super) fn surfaces(
     }
     limits::entries("surfaces", all.made.len())?;
     Ok(all)
+}
+
+/// Whether every prescribed displacement moves both nodes or neither.
+fn moves_alike(spec: &Spec, names: &Names, [a, b]: [usize; 2]) -> bool {
+    spec.loads.iter().all(|load| match load {
+        LoadSpec::Displacement { node, .. } => names
+            .nodes(node)
+            .is_ok_and(|moved| moved.contains(&a) == moved.contains(&b)),
+        _ => true,
+    })
 }
 
 /// Whether no chain, of which these are the ends, continues at the beginning and at the end of one of them.
@@ -368,7 +379,10 @@ pub(super) fn check_use(
         // The first node of a closed chain stands for the last one, at the same place.
         let closed = |n: usize| match entry.nodes[..] {
             [first, .., last] => {
-                n == last && used[first] && coincide(&names.nodes, [first, n], length)
+                let other = if n == last { first } else { last };
+                [first, last].contains(&n)
+                    && used[other]
+                    && coincide(&names.nodes, [first, last], length)
             }
             _ => false,
         };

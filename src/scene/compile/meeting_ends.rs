@@ -23,13 +23,19 @@ pub(super) fn coincide(nodes: &[Node], [a, b]: [usize; 2], length: f64) -> bool 
     distance(nodes[a].at, nodes[b].at) <= SAME * length
 }
 
-/// Ends a chain of nodes without bodies at the node where it begins, if its last node is at the same place.
-pub(super) fn close(elements: &mut [Vec<usize>], nodes: &[Node], on_body: &[bool], length: f64) {
+/// Ends a chain of nodes without bodies at the node where it begins, if its last node is at the same place and stays there.
+pub(super) fn close(
+    elements: &mut [Vec<usize>],
+    nodes: &[Node],
+    on_body: &[bool],
+    stays: impl Fn([usize; 2]) -> bool,
+    length: f64,
+) {
     let is_rigid = elements.iter().flatten().all(|&node| !on_body[node]);
     let [Some(first), Some(last)] = end_nodes(elements) else {
         return;
     };
-    let same = coincide(nodes, [first, last], length);
+    let same = coincide(nodes, [first, last], length) && stays([first, last]);
     if let [_, .., end] = elements
         && let Some(end) = end.last_mut()
         && is_rigid

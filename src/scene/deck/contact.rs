@@ -180,11 +180,14 @@ impl DeckObjects<'_> {
         if touched.iter().any(|&k| all[k].sides.is_empty()) {
             return Vec::new();
         }
-        let sides: BTreeSet<(usize, usize)> = touched
-            .iter()
-            .flat_map(|&k| all[k].sides.iter().copied())
-            .collect();
         let members: HashSet<usize> = nodes.iter().copied().collect();
+        // The nodes of a side may all be fixed, or belong to other groups.
+        let is_near = |&(element, side): &(usize, usize)| {
+            let nodes = deck.side(element, side);
+            nodes.iter().any(|node| members.contains(node))
+        };
+        let sides = touched.iter().flat_map(|&k| all[k].sides.iter().copied());
+        let sides: BTreeSet<(usize, usize)> = sides.filter(is_near).collect();
         let is_whole = |&(element, side): &(usize, usize)| {
             let nodes = deck.side(element, side);
             nodes.iter().all(|node| members.contains(node))

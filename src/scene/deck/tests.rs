@@ -330,6 +330,16 @@ fn a_pair_may_name_sides_of_bodies_only_and_none_that_it_touches() {
         let message = read(side).map(drop).unwrap_err().to_string();
         assert!(message.contains(why), "{side}: {message}");
     }
+    let apart = text
+        .replace("\"f\", \"t\"]", "\"f\"]")
+        .replace("SIDE", "n.top");
+    let message = Scene::from_text("scene.ron", &apart, &[])
+        .map(drop)
+        .unwrap_err();
+    assert!(
+        message.to_string().contains("among the pair's nodes"),
+        "{message}"
+    );
 }
 
 /// A pair names its sides only where they do not follow from the nodes; a name must be that of a chain.

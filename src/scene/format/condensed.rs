@@ -106,7 +106,8 @@ pub struct Problem {
     #[serde(
         default,
         deserialize_with = "positive",
-        skip_serializing_if = "Option::is_none"
+        skip_serializing_if = "Option::is_none",
+        serialize_with = "bare"
     )]
     pub spacing: Option<f64>,
     /// Path of the load factor. Default: one increment from 0 to 1.
@@ -154,7 +155,12 @@ fn positive<'de, D: Deserializer<'de>>(reader: D) -> Result<Option<f64>, D::Erro
 
 impl Problem {
     /// A plane problem with the default history and settings.
-    pub fn new(title: &str, contacts: Vec<Contact>, matrix: Matrix, free: Vec<f64>) -> Problem {
+    pub fn new(title: &str, contacts: Vec<Contact>, matrix: Matrix, mut free: Vec<f64>) -> Problem {
+        // Zeros without a sign.
+        free.iter_mut().for_each(|q| *q += 0.0);
+        if free.iter().all(|q| *q == 0.0) {
+            free.clear();
+        }
         Problem {
             title: title.to_owned(),
             about: String::new(),
@@ -364,6 +370,11 @@ impl Problem {
         let layout = PrettyConfig::new().new_line("\n").depth_limit(2);
         text + HEAD + &notation::strict_lines(self, layout).unwrap_or_default() + "\n"
     }
+}
+
+/// Writes a number without `Some`.
+fn bare<S: Serializer>(value: &Option<f64>, to: S) -> Result<S::Ok, S::Error> {
+    value.unwrap_or_default().serialize(to)
 }
 
 /// Writes a value on one line.
