@@ -333,8 +333,8 @@ fn missed_by_ramp(model: &Model) -> Vec<String> {
     }
     let words = |(surface, slaves): (usize, Vec<usize>)| {
         format!(
-            "{} start inside surface {}, but past its ends, so that they are not pushed out over the first leg, but at once where \
-             they come to touch it; past_ends: {FLUSH} makes them start on the surface",
+            "{} start inside surface {}, past its ends: they are not pushed out over the first leg, but at once when they touch it; \
+             past_ends: {FLUSH} makes them start on the surface",
             some(model, &slaves),
             model.surfaces[surface].name
         )
