@@ -45,8 +45,8 @@ pub(super) fn close(
     }
 }
 
-/// Lets the rigid surfaces, of these entries of the scene's list, that end in a concave corner cross there; surfaces with prescribed nodes, which may part, stay as they
-/// are.
+/// Extends rigid surfaces that end in a concave corner, so that they cross there; `listed` is the entry of the scene's list of each.
+/// Surfaces with prescribed nodes, which may move apart, are left as they are.
 pub(super) fn cross(
     surfaces: &mut [Surface],
     listed: &[usize],
