@@ -398,6 +398,45 @@ fn surfaces_that_end_in_one_point_hold_a_node_like_one_chain() {
     }
 }
 
+/// A block pressed by p = 1 on two others, ν = 0: a state of constant stress, in which each joint node transmits half the force of an
+/// inner node to each side.
+#[test]
+fn a_node_over_a_joint_presses_equally_on_the_ends_of_both_surfaces() {
+    for (past_ends, law) in [
+        ("0", "Hard"),
+        ("0.002", "Hard"),
+        ("0.1", "Penalty(stiffness: 1000)"),
+    ] {
+        let scene = read(&format!(
+            "(title: \"t\", materials: [Elastic(id: \"m\", E: 100, nu: 0, plane: strain, update: small)],
+              nodes: [Block(id: \"l\", element: quad4, elements: (2, 1), corners: [(-1, 0), (0, 0), (0, 1), (-1, 1)]),
+                      Block(id: \"r\", element: quad4, elements: (2, 1), corners: [(0, 0), (1, 0), (1, 1), (0, 1)]),
+                      Block(id: \"u\", element: quad4, elements: (4, 1), corners: [(-1, 1), (1, 1), (1, 2), (-1, 2)])],
+              bodies: [Solid(id: \"l\", mesh: \"l\", material: \"m\"), Solid(id: \"r\", mesh: \"r\", material: \"m\"),
+                       Solid(id: \"u\", mesh: \"u\", material: \"m\")],
+              surfaces: [(id: \"l\", along: \"l.top\", past_ends: {past_ends}), (id: \"r\", along: \"r.top\", past_ends: {past_ends})],
+              slaves: [(nodes: [\"u.bottom\"], on: [\"l\", \"r\"], law: {law})], friction: (angle: 30),
+              supports: [(node: \"l.bottom\", fix: [x, y]), (node: \"r.bottom\", fix: [x, y])],
+              loads: [Traction(along: \"u.top\", y: -1)], history: (path: [0, 1], increment: 0.5))"
+        ));
+        let run = finished(&scene);
+        let model = run.stepper.model();
+        let names = model.contacts.iter().map(|c| &model.nodes[c.node].name);
+        let names: Vec<_> = names.collect();
+        assert_eq!(names, ["u.1", "u.2", "u.3", "u.3~r", "u.4", "u.5"]);
+        let state = run.stepper.state();
+        for (node, exact) in state.nodes.iter().zip([0.25, 0.5, 0.25, 0.25, 0.5, 0.25]) {
+            assert!((node.f_n - exact).abs() < 1e-9, "{past_ends}: {node:?}");
+        }
+        let top = model.place(&state.u, model.contacts[2].node)[1];
+        let gap = if law == "Hard" { 0.0 } else { 1e-3 };
+        assert!(
+            (top - (1.0 - 0.01 - gap)).abs() < 1e-9,
+            "{past_ends}: {top}"
+        );
+    }
+}
+
 #[test]
 fn a_chain_that_returns_to_its_start_is_closed() {
     for (arc, reverse) in [("from: 0, to: 360", false), ("from: 360, to: 0", true)] {

@@ -139,7 +139,8 @@ fn stresses_tell(model: &Model) -> Vec<bool> {
     let masters = model.surfaces.iter().filter(|surface| !surface.rigid);
     let master = marked(model.nodes.len(), masters.flat_map(Surface::nodes));
     let mut contacts = vec![0; model.nodes.len()];
-    model.contacts.iter().for_each(|c| contacts[c.node] += 1);
+    let carriers = model.contacts.iter().flat_map(Contact::carriers);
+    carriers.for_each(|(node, _)| contacts[node] += 1);
     let tell = |node: usize| {
         let first = model.dofs.first[node];
         let held = (0..2).any(|k| model.dofs.equation[first + k].is_none());

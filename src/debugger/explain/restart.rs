@@ -76,7 +76,7 @@ pub fn is_refined(finer: &Model, mesh: &Model) -> bool {
 /// Whether every contact point of a face lies next to one on the finer mesh, whose points on a face are closer than a quarter of it.
 fn has_faces(finer: &Model, mesh: &Model) -> bool {
     let points = |model: &Model| {
-        let contacts = model.contacts.iter().filter(|c| !c.weights.is_empty());
+        let contacts = model.contacts.iter().filter(|c| c.weights.len() > 1);
         let place = |node: usize| model.nodes[node].at;
         let points = contacts.map(|contact| {
             let at = place(contact.node);

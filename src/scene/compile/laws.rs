@@ -135,9 +135,20 @@ pub(super) fn apply(
     }
     let gives = |pair: usize| spec.slaves[pair].law.stiffness().is_some();
     let areas = tributary(&names.nodes, bodies, &pair_of, named, gives);
+    // Contacts of one node share its area equally.
+    let carrier = |slave: &Contact| match slave.weights[..] {
+        [(node, _)] => node,
+        _ => slave.node,
+    };
+    let mut shares = vec![0.0; names.nodes.len()];
+    slaves
+        .iter()
+        .for_each(|slave| shares[carrier(slave)] += 1.0);
     for (slave, &pair) in slaves.iter_mut().zip(pairs) {
         let group = &spec.slaves[pair];
-        slave.area = slave.area.or(group.area).or(areas[slave.node]);
+        let node = carrier(slave);
+        let whole = || group.area.or(areas[node]);
+        slave.area = slave.area.or_else(|| Some(whole()? / shares[node]));
         let own = if group.law.is_tied() {
             FrictionSpec::default()
         } else {
@@ -177,7 +188,7 @@ pub(super) fn stand_upright(dofs: &Dofs, surfaces: &[Surface], slaves: &mut [Con
 /// Rejects points of faces over elements with local flexibility under point forces.
 pub(super) fn check_points(surfaces: &[Surface], slaves: &[Contact]) -> Result<(), Fault> {
     let is_flexible = |surface: &usize| !surfaces[*surface].gives.is_empty();
-    let mut points = slaves.iter().filter(|slave| !slave.weights.is_empty());
+    let mut points = slaves.iter().filter(|slave| slave.weights.len() > 1);
     if points.any(|slave| slave.surfaces.iter().any(is_flexible)) {
         bail!(
             at!["slaves"],

@@ -314,6 +314,12 @@ impl Layout {
         }
     }
 
+    /// Whether a component of a node is no unknown.
+    pub(super) fn is_held(&self, node: usize, component: Component) -> bool {
+        let dof = self.dofs.dof(node, component);
+        !self.on_body[node] || dof.is_none_or(|dof| self.held.contains_key(&dof))
+    }
+
     /// Numbers the equations node by node, followed by those of the bodies' internal unknowns.
     pub(super) fn number(mut self, bodies: &mut [Body]) -> Dofs {
         let is_free = |dof: usize| self.on_body[self.of[dof].0] && !self.held.contains_key(&dof);

@@ -1,10 +1,14 @@
-//! Ends of rigid surfaces that coincide. A chain whose ends coincide is closed. Where two surfaces that a node may touch end in one
-//! point, in a concave corner, each continues past it into the body of the other, so that they cross
-//! ([`stickslip_core::contact::crossing`]).
+//! Ends of surfaces that coincide. A rigid chain whose ends coincide is closed. Where two rigid surfaces that a node may touch end in
+//! one point, in a concave corner, each continues past it into the body of the other, so that they cross
+//! ([`stickslip_core::contact::crossing`]). A node that starts where two surfaces meet that can move apart presses on both ends and has
+//! a contact with each.
 
+use super::super::corners::{CORNER, turn};
+use super::super::nodes::Names;
+use super::layout::Layout;
 use stickslip_core::contact::crossing::ends_in_corner;
 use stickslip_core::plane::distance;
-use stickslip_core::{Contact, Node, Surface};
+use stickslip_core::{Component, Contact, Node, Surface};
 
 /// Distance of ends that coincide, relative to the scene's length.
 const SAME: f64 = 1e-9;
@@ -93,4 +97,71 @@ pub(super) fn cross(
             }
         }
     }
+}
+
+/// Divides each contact that starts at the common end of surfaces into one contact with each of them. The ends must be able to move
+/// apart, so that the equations are independent, and must not form a convex corner, where the node would press on one side only. The
+/// further contacts are points carried by the node, behind its own, with its pair.
+pub(super) fn divide(
+    names: &mut Names,
+    surfaces: &[Surface],
+    slaves: &mut Vec<Contact>,
+    pairs: &mut Vec<usize>,
+    layout: &Layout,
+    length: f64,
+) {
+    let places: Vec<Node> = names.nodes.clone();
+    let end_at = |node: usize, surface: usize| {
+        let ends = end_nodes(&surfaces[surface].elements);
+        let at =
+            |end: &Option<usize>| end.is_some_and(|end| coincide(&places, [end, node], length));
+        Some((ends.iter().position(at)?, surface))
+    };
+    let all: Vec<(Contact, usize)> = slaves.drain(..).zip(pairs.drain(..)).collect();
+    for (mut slave, pair) in all {
+        let may = !slave.bond.is_tied() && slave.weights.is_empty() && slave.surfaces.len() > 1;
+        let met = slave.surfaces.iter().filter(|_| may);
+        let met: Vec<_> = met.filter_map(|&on| end_at(slave.node, on)).collect();
+        let joined = match met[..] {
+            [(1, one), (0, other)] | [(0, other), (1, one)] => {
+                let both = [&surfaces[one].elements, &surfaces[other].elements];
+                parts(both, &places, layout).then(|| met[1].1)
+            }
+            _ => None,
+        };
+        let Some(other) = joined else {
+            slaves.push(slave);
+            pairs.push(pair);
+            continue;
+        };
+        let own = &places[slave.node];
+        let point = Contact {
+            node: names.nodes.len(),
+            weights: vec![(slave.node, 1.0)],
+            surfaces: vec![other],
+            ..slave.clone()
+        };
+        names.nodes.push(Node {
+            name: format!("{}~{}", own.name, surfaces[other].name),
+            at: own.at,
+        });
+        slave.surfaces.retain(|&on| on != other);
+        slaves.extend([slave, point]);
+        pairs.extend([pair, pair]);
+    }
+}
+
+/// Whether the end of one chain and the start of the next one, at the same place, can move apart along both axes, and do not form a
+/// convex corner.
+fn parts([one, next]: [&Vec<Vec<usize>>; 2], nodes: &[Node], layout: &Layout) -> bool {
+    let ([.., before], [behind, ..]) = (&one[..], &next[..]) else {
+        return false;
+    };
+    let (Some(&end), Some(&start)) = (before.last(), behind.first()) else {
+        return false;
+    };
+    let is_held = |axis| layout.is_held(end, axis) && layout.is_held(start, axis);
+    end != start
+        && ![Component::X, Component::Y].into_iter().any(is_held)
+        && turn(before, behind, |node| nodes[node].at) <= CORNER
 }

@@ -104,6 +104,18 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
     if spec.settings.initial_gaps == InitialGaps::Ramp {
         gaps::ramp(&names.nodes, &surfaces.made, &mut slaves);
     }
+    let mut supported = Layout::new(on_body.clone(), &bodies);
+    supported.supports(spec, &names)?;
+    supported.loads(spec, &names, &bodies)?;
+    meeting_ends::divide(
+        &mut names,
+        &surfaces.made,
+        &mut slaves,
+        &mut pairs,
+        &supported,
+        length,
+    );
+    on_body.resize(names.nodes.len(), false);
     laws::apply(spec, &names, &bodies, &pairs, &named, &mut slaves)?;
     let mut layout = Layout::new(on_body.clone(), &bodies);
     layout.supports(spec, &names)?;
