@@ -198,10 +198,10 @@ mod tests {
 
     #[test]
     fn only_loads_that_act_are_shown_except_at_the_start() {
-        let text = "(title: \"t\", nodes: [Line(id: \"b\", from: (0, 0), to: (1, 0), elements: 1, per_element: 2)],
+        let text = "(title: \"t\", nodes: [Line(id: \"b\", from: (0, 0), to: (1, 0), elements: 2, per_element: 2)],
             materials: [Section(id: \"m\", EA: 1, EI: 1)], bodies: [Beam(id: \"b\", along: \"b\", material: \"m\")],
             supports: [(node: \"b.start\", fix: [x, y, rotation])], loads: [Force(node: \"b.end\", x: 1),
-            Force(node: \"b.start\", x: 1, scale: [(1, 0), (2, 1)])], history: (path: [0, 2], increment: 1))";
+            Force(node: \"b.2\", x: 1, scale: [(1, 0), (2, 1)])], history: (path: [0, 2], increment: 1))";
         let model = Scene::from_text("t", text, &[]).unwrap().model;
         let count = |load: f64| {
             let place = |node: usize| model.nodes[node].at;
