@@ -291,7 +291,7 @@ impl Attached {
     fn change(&mut self, asked: &[Intervention]) -> Result<(), Fault> {
         for request in asked
             .iter()
-            .flat_map(|one| requests(one, &self.ids, &self.offers))
+            .flat_map(|one| requests(one, &self.model.contacts, &self.ids, &self.offers))
             .collect::<Vec<_>>()
         {
             self.order(&request)?;

@@ -161,11 +161,11 @@ impl<'a> Server<'a> {
     /// The intervention for a parameter's new value.
     fn setting(&self, name: &str, value: &Value) -> Result<Intervention, String> {
         let controls = &self.stepper.state().controls;
-        let now = controls.friction.first().copied().unwrap_or_default();
         match name {
             INCREMENT | FRICTION | COHESION => {
                 if value.is_number() {
-                    Ok(orders::set(name, value, now))
+                    let contacts = &self.stepper.model().contacts;
+                    Ok(orders::set(name, value, &controls.friction, contacts))
                 } else {
                     let value = shortened(&value.to_string());
                     Err(format!("{name} must be a number, not {value}"))

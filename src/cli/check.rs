@@ -54,6 +54,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     }
     let mut notes = scene.remarks.clone();
     notes.extend(scene.names().notes(scene.spec.refine));
+    notes.extend(scene.spec.notes());
     for note in &notes {
         notify(&format!("note: {note}"));
     }

@@ -6,6 +6,7 @@ use super::groups;
 use std::io::IsTerminal;
 use std::path::PathBuf;
 use stickslip_debugger::{JournalTarget, Recording, Session};
+use stickslip_scene::Scene;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -67,10 +68,15 @@ pub fn main(args: Args) -> Result<Exit, Error> {
         return view(recording, name, &args);
     }
     let scene = args.scene.as_deref().unwrap_or("SCENE");
-    needs_terminal(
+    let terminal = needs_terminal(
         DEBUGGER,
         &format!("run {scene} --csv -` solves without one"),
-    )?;
+    );
+    if let (Err(_), Some(scene)) = (&terminal, &args.scene) {
+        // The command of the message must be able to read the file.
+        Scene::open_any(scene, &args.set.set)?;
+    }
+    terminal?;
     front::debug(args.scene, &args.set.set, &args.keep.target())?;
     Ok(Exit::Good)
 }

@@ -112,6 +112,9 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
             "{option} is for pictures only: -o FILE.svg or FILE.png"
         )));
     }
+    if args.node.is_some() && args.only.as_deref() != Some("cone") {
+        return Err(usage("--node selects the contact of --only cone".into()));
+    }
     let fits = |range: RangeInclusive<u16>| {
         args.size
             .is_none_or(|(w, h)| range.contains(&w) && range.contains(&h))

@@ -89,27 +89,33 @@ fn write_hand_in(to: &Path, force: bool) -> Result<Exit, Error> {
     Ok(Exit::Good)
 }
 
-/// Prints the table of a class, lessons in teaching order. Files that cannot be read are named and left out.
+/// Prints the table of a class, lessons in teaching order. Files that cannot be read, and copies, are named and left out.
 fn collect(files: &[PathBuf]) -> Result<Exit, Error> {
-    let (class, unread): (Vec<_>, Vec<_>) = files
-        .iter()
-        .map(|file| {
-            if file.exists() {
-                Progress::read(file).map_err(Error::usage)
-            } else {
-                Err(usage!("{}: no such file", file.display()))
+    let (mut class, mut left_out) = (Vec::new(), 0);
+    for file in files {
+        let read = match Progress::read(file) {
+            _ if !file.exists() => Err(usage!("{}: no such file", file.display())),
+            Ok(own) if class.contains(&own) => {
+                let (file, name) = (file.display(), &own.name);
+                Err(usage!(
+                    "{file}: the work of {name}, which another file has too"
+                ))
             }
-        })
-        .partition(Result::is_ok);
-    for error in unread.iter().filter_map(|result| result.as_ref().err()) {
-        notify(&error.to_string());
+            read => read.map_err(Error::usage),
+        };
+        match read {
+            Ok(own) => class.push(own),
+            Err(error) => {
+                notify(&error.to_string());
+                left_out += 1;
+            }
+        }
     }
-    let class: Vec<Progress> = class.into_iter().flatten().collect();
     let order: Vec<&str> = teach::list().iter().map(|lesson| lesson.name).collect();
     if !class.is_empty() {
         say(&hand_in::class_table(&class, &order))?;
     }
-    match unread.len() {
+    match left_out {
         0 => Ok(Exit::Good),
         left_out => Err(usage!("{left_out} of {} files left out", files.len())),
     }

@@ -121,6 +121,8 @@ records! {
         stability: Vec<StabilityRecord>,
         /// Warnings
         warnings: Vec<String>,
+        /// Numbers of all increments that were accepted with a warning; `warnings` describes the first ten
+        doubtful: Vec<u32>,
         /// Notes, also those that `--quiet` does not print
         notes: Vec<String>,
         /// Monitors of the last accepted increment

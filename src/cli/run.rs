@@ -301,6 +301,7 @@ impl<'a> Run<'a> {
             unstable: tally.losses.clone(),
             stability: stability.map(Stretches::records).unwrap_or_default(),
             warnings: tally.messages.warnings.clone(),
+            doubtful: tally.doubtful.clone(),
             notes: tally.messages.notes.clone(),
             monitors: tally.monitors(),
             slaves: tally.slaves(),

@@ -7,7 +7,8 @@ use super::run_outputs::{RunOutputs, first_closed, send};
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 use stickslip_core::{
-    ContactRecord, Event, Fallback, MotionEvent, Norms, Outcome, Solver, Stability, State, counted,
+    ContactRecord, Event, Fallback, Mode, MotionEvent, Norms, Outcome, Solver, Stability, State,
+    Status, counted,
 };
 use stickslip_debugger::Strip;
 use stickslip_debugger::explain::accuracy;
@@ -23,7 +24,7 @@ use stickslip_scene::number::UNREPORTED;
 use stickslip_scene::{Scene, aligned, first_of, joined, shortest, sig6};
 
 /// Warnings that are printed individually; others are only counted.
-const MOST_WARNINGS: u32 = 10;
+const MOST_WARNINGS: usize = 10;
 /// Recoveries up to this number need no summary.
 const LEAST_SUMMARY: u32 = 3;
 /// Maximum number of slave nodes in the final table.
@@ -84,8 +85,10 @@ pub struct Tally<'a> {
     /// Accepted increments, and their major iterations.
     pub accepted: u64,
     pub majors: u64,
-    /// Increments accepted with a warning.
-    doubtful: u32,
+    /// Numbers of the increments accepted with a warning.
+    pub doubtful: Vec<u32>,
+    /// Whether a slave node was closed in an accepted increment.
+    touched: bool,
     /// Accepted increments of an attached solver that violate a law.
     pub violated: u64,
     /// Load factors of increments that were accepted with a fallback.
@@ -131,7 +134,8 @@ impl<'a> Tally<'a> {
             minors: 0,
             accepted: 0,
             majors: 0,
-            doubtful: 0,
+            doubtful: Vec::new(),
+            touched: false,
             violated: 0,
             found: BTreeMap::new(),
             jumps: Vec::new(),
@@ -231,6 +235,8 @@ impl<'a> Tally<'a> {
         });
         let event = solver.event();
         self.slaves.clone_from(&event.nodes);
+        let is_closed = |node: &ContactRecord| node.decision.before != Mode::Free;
+        self.touched |= event.nodes.iter().any(is_closed);
         self.warn(event);
         let (minors, monitors) = (self.minors, &self.monitors);
         if let Some((stretches, stability)) = self.stability.as_mut().zip(stability) {
@@ -311,7 +317,7 @@ impl<'a> Tally<'a> {
             let seen = self.loose.entry(key).or_insert(now..=now);
             *seen = extended(seen);
         }
-        if self.count_notes() <= MOST_WARNINGS {
+        if self.count_notes() as usize <= MOST_WARNINGS {
             self.progress.clear();
             self.messages.note(report::note(&self.scene.model, event));
         }
@@ -369,9 +375,9 @@ impl<'a> Tally<'a> {
         if although.is_empty() {
             return;
         }
-        self.doubtful += 1;
-        if self.doubtful <= MOST_WARNINGS {
-            let (increment, load) = (event.position.increment, shortest(event.load_factor));
+        let (increment, load) = (event.position.increment, shortest(event.load_factor));
+        self.doubtful.push(increment);
+        if self.doubtful.len() <= MOST_WARNINGS {
             self.progress.clear();
             self.messages.warn(format!(
                 "increment {increment} (load {load}) was accepted{although}"
@@ -381,10 +387,10 @@ impl<'a> Tally<'a> {
 
     /// Adds the warnings and notes that summarise the run; `state` is its last state.
     pub fn sum_up(&mut self, state: &State) {
-        if self.doubtful > MOST_WARNINGS {
+        if self.doubtful.len() > MOST_WARNINGS {
             self.messages.warn(format!(
                 "{} increments in total were accepted with warnings",
-                self.doubtful
+                self.doubtful.len()
             ));
         }
         if let Some(left) = accuracy::left(&self.noisiest) {
@@ -403,9 +409,12 @@ impl<'a> Tally<'a> {
         if let Some(error) = self.settled {
             self.messages.note(accuracy::not_unique(error));
         }
+        if state.status == Status::Finished && !self.touched && !self.slaves.is_empty() {
+            self.messages.note("no slave node touched a surface".into());
+        }
         let within = |seen: &RangeInclusive<u32>| match (seen.start(), seen.end()) {
             (first, last) if first == last => format!("increment {first}"),
-            (first, last) => format!("increments {first} to {last}"),
+            (first, last) => format!("first in increment {first}, last in {last}"),
         };
         // Bodies that were loose in the same increments share a line.
         let mut alike: Vec<(&RangeInclusive<u32>, Vec<&str>)> = Vec::new();

@@ -6,6 +6,7 @@
 
 use super::Scene;
 use super::compile::{Choices, Compiled, Groups, Loads, compile, renewed};
+use super::scene::instead_of;
 use crate::Spec;
 use crate::format::error::at;
 use crate::format::paths;
@@ -41,9 +42,10 @@ impl Base {
         &self.scene
     }
 
-    /// Finds a scalar; `None` if the path does not exist or its text has a different format.
+    /// Finds a scalar; `None` if the path does not exist or has no effect, or its text has a different format.
     pub fn find(&self, path: &str) -> Option<ScalarLocation> {
-        let at = paths::find(&self.scene.spec, path)?;
+        let spec = &self.scene.spec;
+        let at = paths::find(spec, path).filter(|_| instead_of(spec, path).is_none())?;
         (at != at!["settings", "memory"]).then(|| ScalarLocation {
             path: path.to_owned(),
             is_choice: Choices::has(&at),

@@ -370,7 +370,7 @@ fn without(model: &Model) -> Vec<String> {
         ),
         (
             model.prescribed.is_empty(),
-            "prescribed displacements: there are none",
+            "prescribed displacements other than 0: there are none",
         ),
         (
             model.monitors.is_empty(),

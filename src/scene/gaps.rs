@@ -84,12 +84,13 @@ pub fn start_gaps(model: &Model) -> Vec<StartGaps> {
     (0..model.surfaces.len()).filter_map(of).collect()
 }
 
-/// A range in words; only one number if both ends are equal.
+/// A range in words; only one number if both ends are equal as shown.
 pub(crate) fn from_to(least: f64, largest: f64) -> String {
+    let [least, largest] = [least, largest].map(sig4);
     if least == largest {
-        sig4(least)
+        least
     } else {
-        format!("{} to {}", sig4(least), sig4(largest))
+        format!("{least} to {largest}")
     }
 }
 
@@ -111,7 +112,29 @@ pub fn words(model: &Model) -> Vec<String> {
         };
         format!("{name} {range}{inside}")
     };
-    start_gaps(model).into_iter().map(line).collect()
+    let mut all: Vec<String> = start_gaps(model).into_iter().map(line).collect();
+    let away = faces_none(model);
+    if !away.is_empty() {
+        let names = some(model, &away);
+        let (count, of) = (away.len(), model.contacts.len());
+        all.push(format!(
+            "off all surfaces: {names} ({count} of {of} slave nodes)"
+        ));
+    }
+    all
+}
+
+/// Slave numbers of the nodes that face no surface before the first solve.
+fn faces_none(model: &Model) -> Vec<usize> {
+    if model.space.is_some() {
+        return Vec::new();
+    }
+    let stands = stands(&model.nodes, &model.surfaces, &model.contacts);
+    let away = stands
+        .iter()
+        .enumerate()
+        .filter(|(_, stand)| stand.is_none());
+    away.map(|(slave, _)| slave).collect()
 }
 
 /// Warnings about the initial state, one sentence each, the most serious first.
@@ -144,6 +167,11 @@ pub fn warnings(model: &Model) -> Vec<String> {
             found.nodes,
             sig4(deepest)
         ));
+    }
+    let away = faces_none(model);
+    if !away.is_empty() && away.len() == model.contacts.len() {
+        let names = some(model, &away);
+        all.push(format!("no slave node faces a surface at the start ({names}): all are past the ends of their surfaces"));
     }
     all.extend(missed_by_ramp(model));
     all.extend(unheld(model));

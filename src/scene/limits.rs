@@ -4,6 +4,7 @@
 //! ([`super::memory`], [`super::cost`]).
 
 use crate::format::error::{Fault, Path, fault};
+use crate::shortest;
 use stickslip_core::linear::estimate::bytes;
 
 /// Maximum number of nodes after refinement: indices in the stiffness have 32 bits.
@@ -102,11 +103,14 @@ pub(crate) fn memory(wanted: f64, setting: Option<f64>) -> Result<(), String> {
     if wanted <= budget {
         return Ok(());
     }
-    Err(format!(
-        "at least {} of memory, but {} are free; settings.memory sets the limit (GB)",
-        bytes(wanted),
-        bytes(budget)
-    ))
+    let limit = match setting {
+        Some(limit) => format!("settings.memory sets the limit to {} GB", shortest(limit)),
+        None => format!(
+            "{} are free; settings.memory sets the limit (GB)",
+            bytes(budget)
+        ),
+    };
+    Err(format!("at least {} of memory, but {limit}", bytes(wanted)))
 }
 
 /// Limits the total number of element nodes, so that a chain used repeatedly does not fill the memory.

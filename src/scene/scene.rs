@@ -158,6 +158,16 @@ impl Scene {
     }
 }
 
+/// Why a value has no effect in a scene, and what to set instead.
+pub(crate) fn instead_of(spec: &Spec, path: &str) -> Option<String> {
+    if spec.in_space.is_some() && !path.starts_with("settings.") {
+        return Some("in space; set settings.*, or change the contacts in the file".to_owned());
+    }
+    let field = path.strip_prefix("friction.")?;
+    let own = !spec.slaves.is_empty() && spec.slaves.iter().all(|pair| pair.friction.is_some());
+    own.then(|| format!("where every pair has its own friction; set slaves[0].friction.{field}"))
+}
+
 /// The scene of a file with additional values set from outside.
 pub(crate) fn changed(
     name: &str,
@@ -166,10 +176,14 @@ pub(crate) fn changed(
     mut overrides: Vec<Override>,
 ) -> Result<(Spec, Vec<Override>), SceneError> {
     for (path, value) in changes {
-        let change = paths::set(&mut spec, path, value).map_err(|why| SceneError {
+        let refused = |why: String| SceneError {
             set: Some(error::shortened(&format!("{path}={value}"))),
-            ..SceneError::whole(name, why.to_string())
-        })?;
+            ..SceneError::whole(name, why)
+        };
+        let change = paths::set(&mut spec, path, value).map_err(|why| refused(why.to_string()))?;
+        if let Some(instead) = instead_of(&spec, &change.path) {
+            return Err(refused(format!("{} has no effect {instead}", change.path)));
+        }
         overrides.retain(|earlier| earlier.at != change.at);
         overrides.push(change);
     }

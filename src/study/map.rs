@@ -310,7 +310,7 @@ impl Map {
         const SHOWN: usize = 4;
         let names = first_of(named.iter().map(|&k| self.name(k)), SHOWN, "; ");
         let compared = if names.is_empty() {
-            "Nothing was compared: no two runs solve the same problem.".to_owned()
+            "Nothing was compared: no two finished runs solve the same problem.".to_owned()
         } else {
             format!(
                 "Ends are compared with those of {names}; wrong: a monitor differs by more than {} of the largest value \

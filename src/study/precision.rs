@@ -262,9 +262,21 @@ fn truth(
                 let &[a, b, c] = own.last_chunk::<3>()?;
                 Some(([a, b, c], ratio([a, b, c])?))
             });
-            let none = "Richardson extrapolation needs three finished runs of a series with one varied number that \
-                        changes by a constant ratio, such as --over refine=1,2,4";
-            let (runs, ratio) = found.ok_or_else(|| wrong(none.to_owned()))?;
+            let failed = all.iter().filter_map(|m| {
+                let why = match (&m.point.failed, m.point.unsettled) {
+                    (Some(why), _) => why,
+                    (None, 0) => return None,
+                    (None, _) => "accepted, but not converged",
+                };
+                Some(format!("; {}: {why}", m.point.name))
+            });
+            let none = || {
+                "Richardson extrapolation needs three finished runs of a series with one varied number that changes by a \
+                 constant ratio, such as --over refine=1,2,4"
+                    .to_owned()
+                    + &joined(failed, "")
+            };
+            let (runs, ratio) = found.ok_or_else(|| wrong(none()))?;
             let curves = runs.map(|m| Reference::from_run(&m.run, String::new(), &m.path));
             let [a, b, c] = &curves;
             let fixed = |leg, load| planned.counts(path, leg, load);

@@ -45,6 +45,8 @@ fn a_kept_exchange_has_every_branch_with_the_same_states() {
             lines.len()
         );
         let mut read = Session::attached(opened.scene, Box::new(opened.past), opened.log);
+        let load = |session: &Session| session.frames()[0].state.load_factor;
+        assert_eq!(load(&read), load(&session), "before the first step");
         let mut ways = Vec::new();
         for (steps, number) in lines.into_iter().zip(1..) {
             does(&mut read, Command::Goto { step: 0 });

@@ -5,6 +5,7 @@ use super::program::{code, err, out, program, well};
 use super::side::{PATIENT, back, does, force, forward, own};
 use libtest_mimic::Trial;
 use std::path::Path;
+use stickslip::attach::check::check;
 use stickslip::attach::serve::serve;
 use stickslip::attach::{Attached, Start};
 use stickslip::history::frame::Frame;
@@ -23,6 +24,7 @@ pub fn tests() -> Vec<Trial> {
         core_export_and_audit_take_an_attached_solver,
         round_off_of_an_end_without_forces_is_no_finding_and_a_pull_is_one,
         sessions_with_interventions_are_the_same_frame_by_frame,
+        a_change_of_friction_leaves_the_other_field_of_each_contact_and_tied_contacts_pass_the_check,
         a_snapshot_of_an_attached_solver_is_equal_when_replayed_against_it,
         what_is_not_offered_is_refused_with_the_reason,
         a_journal_leads_to_the_same_bits_against_the_solver_and_to_others_against_another,
@@ -313,6 +315,45 @@ pub fn seen(frame: &Frame) -> String {
         frame.intervention.is_some(),
         nodes.collect::<Vec<_>>()
     )
+}
+
+fn a_change_of_friction_leaves_the_other_field_of_each_contact_and_tied_contacts_pass_the_check() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("own-friction.ron");
+    let bar = |node, angle| format!("(nodes: [\"{node}\"], angle: {angle}, stiffness: 4)");
+    let bars: Vec<String> = ["a", "b", "c"]
+        .iter()
+        .flat_map(|n| [bar(n, 0), bar(n, 90)])
+        .collect();
+    let text = format!(
+        "(title: \"t\", nodes: [Node(id: \"a\", at: (0, 0)), Node(id: \"b\", at: (1, 0)), Node(id: \"c\", at: (2, 0)),
+        Line(id: \"f\", from: (3, 0), to: (-1, 0), elements: 1, per_element: 2)], materials: [],
+        bodies: [Springs(id: \"k\", bars: [{}])], surfaces: [(id: \"f\", along: \"f\")], slaves: [
+        (nodes: [\"a\"], on: [\"f\"], friction: (angle: 20, cohesion: 0.05)), (nodes: [\"b\"], on: [\"f\"]),
+        (nodes: [\"c\"], on: [\"f\"], law: Tied)], friction: (angle: 30), loads: [Force(node: \"a\", x: 1, y: -1),
+        Force(node: \"b\", x: 1, y: -0.5), Force(node: \"c\", x: 1, y: 1)], history: (path: [0, 1], increment: 0.2))",
+        bars.join(", ")
+    );
+    std::fs::write(&file, text).unwrap();
+    let name = file.to_str().unwrap();
+    let log = Log::default();
+    let mut attached = session(start(name, "any", ""), &log);
+    let mut own = Session::new(scene(name, &[]));
+    for command in [
+        forward(Unit::Increment, 2),
+        set("friction.angle", "12"),
+        forward(Unit::Increment, 1),
+        set("friction.cohesion", "0.02"),
+        forward(Unit::Increment, 2),
+    ] {
+        does(&mut own, command.clone());
+        does(&mut attached, command);
+        let both = [&own, &attached].map(|session| session.frames().iter().map(seen).collect());
+        let [one, other]: [Vec<String>; 2] = both;
+        assert_eq!(one, other);
+    }
+    let report = check(&start(name, "any", ""), &log);
+    assert_eq!(report.failed(), 0, "{}", report.text());
 }
 
 fn sessions_with_interventions_are_the_same_frame_by_frame() {

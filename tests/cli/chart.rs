@@ -286,6 +286,10 @@ fn contact_forces_have_a_panel_and_a_richardson_reference_has_an_error_bar() {
                history.increment=0.1 --reference richardson --repeats 1";
     let output = ran(directory.path(), &words(two));
     refused(&output, "needs three finished runs");
+    let failing =
+        "osc-p5-slow --over history.increment=0.4,0.2,0.1 --reference richardson --repeats 1";
+    let output = ran(directory.path(), &words(failing));
+    refused(&output, "; increment=0.1: major-limit at load");
 }
 
 #[test]

@@ -64,6 +64,18 @@ fn a_picture_says_which_state_it_is_of_whether_the_scene_converges_or_fails() {
 }
 
 #[test]
+fn a_long_name_is_cut_where_it_would_cover_the_mode() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    let text = std::fs::read_to_string("problems/osc-two6.ron").unwrap();
+    let text = text.replace("\"a\"", "\"a-name-of-more-than-20-letters\"");
+    std::fs::write(here.join("long.ron"), text).unwrap();
+    exported(here, &["long.ron", "-o", "a.svg"]);
+    let svg = texts(&read(here, "a.svg"));
+    assert!(svg.contains("a-name-of-more-than-…"), "{svg}");
+}
+
+#[test]
 fn a_picture_is_of_the_place_that_is_asked_for_or_there_is_none() {
     let directory = tempfile::tempdir().unwrap();
     let here = directory.path();
@@ -254,7 +266,8 @@ fn what_no_file_can_say_is_refused_and_leaves_nothing() {
     let here = directory.path();
     let cohesive = exported(here, &["osc-coh-none", "-o", "a.dat", "--at", "1.1.1"]);
     assert_eq!(code(&cohesive), 3, "{}", err(&cohesive));
-    assert!(err(&cohesive).contains("cohesion"), "{}", err(&cohesive));
+    let words = "cohesion, which only .ron files support";
+    assert!(err(&cohesive).contains(words), "{}", err(&cohesive));
     assert_eq!(out(&cohesive), "");
     assert!(names(here).is_empty());
 }
@@ -364,7 +377,11 @@ fn a_part_of_a_picture_has_the_requested_size_and_options_of_pictures_are_refuse
             "a picture has 100 to 8000 pixels per side",
         ),
         (
-            &[OSC, "-o", "a.svg", "--node", "tip"],
+            &[OSC, "-o", "a.svg", "--node", "beam.5"],
+            "--node selects the contact of --only cone",
+        ),
+        (
+            &[OSC, "-o", "a.svg", "--only", "cone", "--node", "tip"],
             "unknown slave node 'tip'; known: beam.5",
         ),
         (

@@ -365,6 +365,16 @@ fn an_audit_agrees_with_its_table_and_marked_increments_do_not_count() {
         (&history["violated"], &history["marked"]),
         (&false.into(), &6.into())
     );
+    // More than the ten whose warnings are printed.
+    let many = ["settings.slip=major", "history.increment=0.002"].map(|set| ["--set", set]);
+    let of = |command: &str| record(&[&[command, BEAM, "--json"], many.as_flattened()].concat());
+    let (run, audit) = (of("run"), of("audit"));
+    let marked = list(&run["doubtful"]);
+    assert!(
+        marked.len() > 10 && marked.contains(&226.into()),
+        "{marked:?}"
+    );
+    assert_eq!(audit["histories"][0]["marked"], marked.len());
     let violated = |field: &str| -> Vec<&Value> {
         let violated = list(&history[field])
             .iter()

@@ -45,6 +45,7 @@ fn a_file_of_another_kind_is_told_with_the_command_that_reads_it() {
     ];
     // The words of each reader, and the files that it reads itself.
     let readers: &[(&[&str], &[&str])] = &[
+        (&[], &["scene.ron"]),
         (&["run"], &["scene.ron"]),
         (&["check"], &["scene.ron"]),
         (&["core"], &["scene.ron"]),

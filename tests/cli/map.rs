@@ -344,7 +344,10 @@ fn a_run_that_nothing_can_be_compared_with_says_so() {
             .iter()
             .all(|c| c.verdict == RunVerdict::Right && c.reference.is_none())
     );
-    assert!(map.csv().contains("# Nothing was compared"));
+    assert!(
+        map.csv()
+            .contains("# Nothing was compared: no two finished runs")
+    );
 }
 
 #[test]

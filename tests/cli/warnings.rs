@@ -1,6 +1,6 @@
 //! Warnings about the places of bodies after a run: those of `run` are those of the debugger's report.
 
-use crate::program::{code, err, ran};
+use crate::program::{code, err, out, ran};
 use std::path::Path;
 use stickslip::record::command::{Command, Unit};
 use stickslip::scene::Scene;
@@ -78,6 +78,40 @@ fn the_diagnosis_of_a_failed_run_has_its_warnings() {
         "bodies base and ram overlap in the last accepted state",
     ];
     agree(scene.to_str().unwrap(), 3, &parts);
+}
+
+#[test]
+fn nodes_that_face_no_surface_and_runs_without_contact_are_named() {
+    let directory = tempfile::tempdir().unwrap();
+    let text = |floor: f64, load: f64| {
+        format!(
+            r#"(title: "t", nodes: [Line(id: "b", from: (0, 0.1), to: (2, 0.1), elements: 2, per_element: 2),
+            Line(id: "f", from: ({floor}, 0), to: (-1, 0), elements: 1, per_element: 2)],
+            materials: [Section(id: "m", EA: 1000, EI: 1)], bodies: [Beam(id: "b", along: "b", material: "m")],
+            surfaces: [(id: "f", along: "f")], slaves: [(nodes: ["b.2", "b.3"], on: ["f"])],
+            supports: [(node: "b.start", fix: [x, y, rotation])], loads: [Force(node: "b.end", y: {load})],
+            history: (path: [0, 1], increment: 0.5))"#
+        )
+    };
+    let told = |floor: f64, load: f64, command: &str| {
+        let scene = directory.path().join("s.ron");
+        std::fs::write(scene, text(floor, load)).unwrap();
+        let output = ran(directory.path(), &[command, "s.ron"]);
+        assert_eq!(code(&output), 0, "{}", err(&output));
+        out(&output) + &err(&output)
+    };
+    assert!(told(3.0, -0.5, "check").contains("gaps      f 0.1\n"));
+    let some = told(1.5, -0.5, "check");
+    let line = "f 0.1\n          off all surfaces: b.3 (1 of 2 slave nodes)\n";
+    assert!(some.contains(line) && !some.contains("warning"), "{some}");
+    let none = told(0.5, -0.5, "check");
+    assert!(
+        none.contains("warning: no slave node faces a surface at the start (b.2, b.3)"),
+        "{none}"
+    );
+    const NEVER: &str = "note: no slave node touched a surface";
+    assert!(!told(3.0, -0.5, "run").contains(NEVER));
+    assert!(told(3.0, 0.5, "run").contains(NEVER));
 }
 
 /// A pad is pressed through a strip on a base: the contact of the strip with the pad is defined the wrong way round.

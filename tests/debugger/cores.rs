@@ -6,6 +6,7 @@ use std::process::{Command as Process, Output};
 use std::sync::Arc;
 use stickslip::contact::record::Forced;
 use stickslip::explain::core::{Core, core};
+use stickslip::explain::cycles;
 use stickslip::interface::minor_history::Cycle;
 use stickslip::interface::problem::InterfaceProblem;
 use stickslip::interface::trials::Trials;
@@ -404,7 +405,14 @@ fn the_debugger_writes_cores_whole_problems_and_what_an_extension_says() {
     };
     // From the start, too, since the minor iterations run into the cycle.
     let core = write(&mut session, ExportScope::Core, "early.ron").unwrap();
-    assert!(core.contains("In this file: cycle of period 2"), "{core}");
+    let (_, of_file) = core.split_once("// In this file: ").unwrap();
+    let file = Scene::from_text("core", &core, &[]).unwrap();
+    let cycle = stuck(file).map(|own| cycles::cycle(&own.scene.model, &own.cycle));
+    let words = cycle.unwrap();
+    assert!(
+        of_file.starts_with(&format!("{words}.\n")),
+        "{words}\n{core}"
+    );
     let again = write(&mut session, ExportScope::Core, "early.ron").unwrap_err();
     assert!(again.contains("exists already"), "{again}");
     let run = Command::Forward {

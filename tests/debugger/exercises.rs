@@ -212,13 +212,34 @@ fn what_is_handed_in_is_counted_in_the_table_of_the_class() {
     assert_eq!(none.status.code(), Some(2), "{none:?}");
     // One file that is none does not cost the others their table.
     fs::write(home.path().join("foreign.work"), b"\xff{").unwrap();
-    let files = ["lesson", "--collect", "foreign.work", "ada.work"];
+    fs::copy(home.path().join("ada.work"), home.path().join("copy.work")).unwrap();
+    fs::write(
+        home.path().join("scene.ron"),
+        "(title: \"t\", nodes: [], bodies: [])",
+    )
+    .unwrap();
+    let files = [
+        "lesson",
+        "--collect",
+        "foreign.work",
+        "ada.work",
+        "copy.work",
+        "scene.ron",
+    ];
     let mixed = run(&files, home.path());
     assert_eq!(mixed.status.code(), Some(2), "{mixed:?}");
     assert!(String::from_utf8_lossy(&mixed.stdout).contains("\nada "));
     let errors = String::from_utf8_lossy(&mixed.stderr).into_owned();
     assert!(
-        errors.contains("foreign.work") && errors.contains("1 of 2 files"),
+        errors.contains("foreign.work") && errors.contains("3 of 4 files"),
+        "{errors}"
+    );
+    assert!(
+        errors.contains("copy.work: the work of ada, which another file has"),
+        "{errors}"
+    );
+    assert!(
+        errors.contains("this is a scene; `stickslip lesson --work"),
         "{errors}"
     );
 }

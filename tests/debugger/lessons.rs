@@ -406,6 +406,9 @@ fn the_state_decides_a_task_and_space_opens_the_next_lesson() {
     let task = r#"Reach(text: "x", load: 1.0, without: [ladder], hint: "h", then: "{load}", solution: ["set settings.strategy lemke", "c"])"#;
     let lesson = Lesson::from_text("test.ron", &lesson_of(task)).unwrap();
     assert_eq!(play(&Arc::new(lesson.clone())).unwrap()[0].then, "Done. 1");
+    let far = lesson_of(&task.replace("load: 1.0", "load: 9.0"));
+    let end = "the solution does not reach the goal; it ends at load 1, increment";
+    assert!(fault(&far).contains(end), "{}", fault(&far));
     let mut debugger = Debugger::new(Theme::mono(), Vec::new(), None);
     debugger.teach(lesson, None);
     let line = |debugger: &mut Debugger, line: &str| {

@@ -298,6 +298,14 @@ fn interventions_are_replayed() {
     without.interventions.pop();
     let differences = compare(&snapshot, &without.replay().unwrap());
     assert!(!differences.is_empty());
+    let text = differences.to_string();
+    assert!(text.contains("number of interventions "), "{text}");
+    let last = text.lines().find(|line| line.starts_with("intervention "));
+    assert!(
+        last.unwrap()
+            .contains(" is sliding in the next minor iteration"),
+        "{text}"
+    );
 }
 
 #[test]

@@ -41,7 +41,8 @@ impl Seen {
         let places: Option<Vec<_>> = settings.iter().map(|(path, _)| base.find(path)).collect();
         let Some(places) = places else {
             assert!(
-                settings.iter().any(|(path, _)| path == "settings.memory"),
+                settings.iter().any(|(path, _)| path == "settings.memory")
+                    || Scene::from_text(&base.scene().name, text, settings).is_err(),
                 "{settings:?}"
             );
             return;

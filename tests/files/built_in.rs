@@ -175,6 +175,12 @@ fn a_large_scene_is_accepted_up_to_the_memory_that_it_may_take() {
     for (refine, memory) in [("40000", "0.5"), ("20000", "0.7")] {
         let error = large(refine, memory).unwrap_err();
         assert!(error.contains("settings.memory sets the limit"), "{error}");
+        let is_early = refine == "40000";
+        assert_eq!(
+            error.contains("sets the limit to 0.5 GB"),
+            is_early,
+            "{error}"
+        );
     }
     let error = large("1", "0").unwrap_err();
     assert!(

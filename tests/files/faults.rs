@@ -107,6 +107,16 @@ fn each_fault_has_one_message_with_its_place() {
         ),
         (
             "start: sliding)]",
+            "law: Tied())]",
+            ": slaves[0]: Tied has no fields; write it without brackets",
+        ),
+        (
+            "start: sliding)]",
+            "law: Penalty)]",
+            ": slaves[0].law: Penalty needs its fields in round brackets: Penalty(...)",
+        ),
+        (
+            "start: sliding)]",
             "start: sliding)",
             ":38:5: slaves[1]: found \"friction\" where a value in round brackets, ( ), or a closing bracket was expected",
         ),
@@ -457,6 +467,10 @@ fn each_fault_of_a_solid_has_one_message_with_its_place() {
         (
             more("loads: [Force(node: \"k\", x: 1)]"),
             "\"k\" is a block of 13 nodes; name one of them",
+        ),
+        (
+            more("supports: [(node: \"k\", fix: [x])]"),
+            "name one of them, as \"k.left.start\" or \"k.2\", or all of them: \"k.all\"",
         ),
         (
             more("loads: [Traction(along: \"k.lft\", x: 1)]"),

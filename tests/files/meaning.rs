@@ -1,6 +1,9 @@
 //! What a sound scene means: loads, supports, regions, monitors, and settings from outside.
 
-use crate::scenes::{BLOCK, ELASTIC, EVERYTHING, LINE, SOLID, assert_usable, small, solid, with};
+use crate::scenes::{
+    BLOCK, ELASTIC, EVERYTHING, LINE, PINNED, SOLID, assert_usable, changed, pinned, small, solid,
+    with,
+};
 use stickslip::format::{Spec, notation, paths};
 use stickslip::model::BoundUpdate;
 use stickslip::model::Model;
@@ -140,8 +143,63 @@ fn settings_from_outside_reach_the_model_and_are_named_in_messages() {
 }
 
 #[test]
+fn none_is_an_absent_value_in_the_file_and_from_outside() {
+    let given = |value: &str| {
+        let (rest, history) = (
+            format!("GA: {value}, EI"),
+            format!("increment: 0.01, least: {value}"),
+        );
+        let text = pinned()
+            .replace("EI", &rest)
+            .replace("increment: 0.01", &history);
+        Scene::from_text("x.ron", &text, &[])
+    };
+    let scene = given("none").unwrap();
+    assert_eq!(scene.spec, Scene::open(PINNED, &[]).unwrap().spec);
+    let scene = given("0.001").unwrap();
+    assert_eq!(scene.spec.history.least, Some(0.001));
+    assert_eq!(
+        scene
+            .with("history.least", "none")
+            .unwrap()
+            .spec
+            .history
+            .least,
+        None
+    );
+    let error = changed("angle: 30.0", "angle: none")
+        .unwrap_err()
+        .to_string();
+    assert!(
+        error.contains("friction.angle: none is not valid; it must be a number"),
+        "{error}"
+    );
+}
+
+#[test]
+fn values_without_effect_are_noted() {
+    let notes = |from: &str, to: &str| changed(from, to).unwrap().spec.notes();
+    assert_eq!(notes("", ""), [""; 0]);
+    assert_eq!(
+        notes("x: -1.0)", "x: -1.0, scale: [(0, 0)])"),
+        ["loads[0] is 0 at every load factor (scale)"]
+    );
+    assert_eq!(
+        notes("start: sliding)]", "start: free, state: (f_n: -1))]"),
+        ["slaves[0].state: f_n and f_t have no effect on nodes that start free"]
+    );
+}
+
+#[test]
 fn friction_of_a_group_is_the_scenes_until_it_is_set() {
     let own = with("slaves[0].friction.cohesion", "0.5").unwrap();
+    let error = own.with("friction.angle", "20").unwrap_err().to_string();
+    assert!(
+        error.contains(
+            "no effect where every pair has its own friction; set slaves[0].friction.angle"
+        ),
+        "{error}"
+    );
     assert_eq!(own.model.contacts[0].friction.cohesion, 0.5);
     assert_eq!(own.model.contacts[0].friction.angle, 30.0);
     assert_eq!(own.spec.friction.cohesion, 0.0);

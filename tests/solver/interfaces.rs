@@ -325,6 +325,13 @@ fn contacts_in_space_are_read_and_what_they_cannot_have_is_refused() {
             .replacen(change.0, change.1, 1)
     };
     let scene = Scene::from_text("a.ron", &text(("", "")), &[]).unwrap();
+    for path in ["friction.angle", "history.increment"] {
+        let error = scene.with(path, "1").unwrap_err().to_string();
+        assert!(
+            error.contains("has no effect in space; set settings.*"),
+            "{error}"
+        );
+    }
     let problem = scene.spec.in_space.unwrap();
     assert_eq!(problem.free, [-0.5, 0.25, 0.0]);
     assert_eq!(problem.compliance, [(0, 0, 1.0), (1, 1, 1.0), (2, 2, 1.0)]);

@@ -3,6 +3,7 @@
 use serde_json::{Value as Json, json};
 use stickslip::recorded::exchange;
 use stickslip::recorded::recording::Recording;
+use stickslip::scene::Scene;
 use stickslip::session::Session;
 use stickslip::tui::Debugger;
 use stickslip::tui::theme::Theme;
@@ -58,6 +59,21 @@ fn whole_screens_of_a_solver_in_space() {
         .find(|line| line.contains("▸a"))
         .expect("node a");
     assert!(timeline.iter().all(|arrow| row.contains(arrow)), "{row}");
+}
+
+/// No table decides on one contact alone.
+#[test]
+fn the_card_of_a_sweep_has_no_table() {
+    let text = "Contacts(title: \"t\", tangents: 2, contacts: [(id: \"a\", friction: (angle: 20))],
+        matrix: Compliance([[1, 0, 0], [0, 1, 0], [0, 0, 1]]), free: [-1, 0.25, 0.5])";
+    let scene = Scene::from_text("space", text, &[]).unwrap();
+    let mut debugger = Debugger::new(Theme::mono(), Vec::new(), Some(Session::new(scene)));
+    debugger.type_keys("s e");
+    let shown = debugger.text(120, 40);
+    assert!(
+        shown.contains(" free → sliding ") && !shown.contains("→ fixed"),
+        "{shown}"
+    );
 }
 
 #[test]

@@ -375,7 +375,7 @@ pub fn friction(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> {
     });
     // The first iteration may still use the old value.
     let (least, then) = (size(now.get(1..).unwrap_or(&[])), size(states));
-    Ok(if then > 0.0 && least > cohesion.max(1e-6 * then) {
+    Ok(if then > 0.0 && least > cohesion + 1e-6 * then {
         fails(
             format!("with mu = 0 the largest limit is {least:?}"),
             "compute limit as mu f_n + cohesion with the new mu, from the next iteration on",

@@ -180,6 +180,11 @@ mod tests {
         assert!(wrong.contains("did you mean \"colours\"?"), "{wrong}");
         let wrong = describe("(colours: ligth)");
         assert!(wrong.contains("did you mean \"light\"?"), "{wrong}");
+        let wrong = describe("");
+        assert!(
+            wrong.contains("(colours: dark, mouse: false, ...)"),
+            "{wrong}"
+        );
         let wrong = describe("(mouse: 3)");
         assert!(wrong.contains("it must be true or false"), "{wrong}");
     }

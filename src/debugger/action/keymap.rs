@@ -130,12 +130,14 @@ impl Keymap {
                 if let Some(owner) = owners.next() {
                     let path = Path(vec![name.as_str().into(), index.into()]);
                     let byte = locate(text, &path).start;
-                    let message = format!(
-                        "{} is already a key of {}; give that action other keys: {:?}: [...]",
-                        quoted(key),
-                        owner.name,
-                        owner.name
-                    );
+                    let (key, other) = (quoted(key), owner.name);
+                    let message = if other == name {
+                        format!("{key} is given twice")
+                    } else {
+                        format!(
+                            "{key} is already a key of {other}; give that action other keys: {other:?}: [...]"
+                        )
+                    };
                     return Err(wrong(byte, &path, message));
                 }
             }
@@ -289,7 +291,7 @@ mod tests {
             ),
             (
                 "{\"step\": [\"x\", \"x\"]}",
-                "keys.ron:1:11: step[0]: \"x\" is already a key of step",
+                "keys.ron:1:11: step[0]: \"x\" is given twice",
             ),
             (
                 "{\"step\": [\"Pageup\"]}",

@@ -53,11 +53,11 @@ pub struct Conditions {
     pub turns: Vec<(usize, Given, bool)>,
 }
 
-/// The marks at a load factor, with nodes at `place`. A load that is still 0 is shown as at the end of the path.
+/// The marks at a load factor, with nodes at `place`. At the start, a load that is 0 is shown as at the end of the path.
 pub fn conditions(model: &Model, load_factor: f64, place: &dyn Fn(usize) -> Point) -> Conditions {
-    let end = model.path.last().copied().unwrap_or(1.0);
+    let [start, end] = [model.path.first(), model.path.last()];
     let amplitude = |value: f64, scale: &Factor| match value * scale.at(load_factor) {
-        0.0 => value * scale.at(end),
+        0.0 if start == Some(&load_factor) => value * scale.at(end.copied().unwrap_or(1.0)),
         now => now,
     };
     let loads = model
@@ -195,6 +195,20 @@ pub fn supports(model: &Model) -> Vec<Support> {
 mod tests {
     use super::*;
     use stickslip_scene::Scene;
+
+    #[test]
+    fn only_loads_that_act_are_shown_except_at_the_start() {
+        let text = "(title: \"t\", nodes: [Line(id: \"b\", from: (0, 0), to: (1, 0), elements: 2, per_element: 2)],
+            materials: [Section(id: \"m\", EA: 1, EI: 1)], bodies: [Beam(id: \"b\", along: \"b\", material: \"m\")],
+            supports: [(node: \"b.start\", fix: [x, y, rotation])], loads: [Force(node: \"b.end\", x: 1),
+            Force(node: \"b.2\", x: 1, scale: [(1, 0), (2, 1)])], history: (path: [0, 2], increment: 1))";
+        let model = Scene::from_text("t", text, &[]).unwrap().model;
+        let count = |load: f64| {
+            let place = |node: usize| model.nodes[node].at;
+            conditions(&model, load, &place).arrows.len()
+        };
+        assert_eq!([0.0, 0.5, 1.5].map(count), [2, 1, 2]);
+    }
 
     #[test]
     fn a_weight_is_one_arrow_although_nodal_forces_of_second_order_elements_point_either_way() {

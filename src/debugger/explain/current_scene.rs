@@ -1,5 +1,6 @@
 //! The scene with the changes made during a run, and further changes of its scalars.
 
+use crate::recorded::orders;
 use crate::refusal::{Refusal, refusal};
 use std::collections::BTreeMap;
 use stickslip_core::step::state::Controls;
@@ -144,11 +145,7 @@ impl CurrentScene<'_> {
                 all[k] = spec.friction.of_node(self.scene.model.contacts[k].area);
             }
         }
-        let first = all.first().copied().unwrap_or_default();
-        Ok(match all.iter().all(|friction| *friction == first) {
-            true => Intervention::Friction(first),
-            false => Intervention::Frictions(all),
-        })
+        Ok(orders::each_friction(all))
     }
 }
 

@@ -1,13 +1,14 @@
 //! Compares two snapshots, node by node.
 //!
 //! Compared exactly: position, numbers of minor iterations and nodes, status, modes, rules, forced modes,
-//! interventions, the limit of the residual, and the scalars of the scenes. Numbers may differ by 1e-9 of their
+//! interventions in words, the limit of the residual, and the scalars of the scenes. Numbers may differ by 1e-9 of their
 //! scale, because another processor may sum in another order. The scale is the force scale of the residual norms
 //! for forces, the diagonal of the scene's bodies for lengths, and 1 for rotations and for residuals, which are
 //! relative already; or the number itself, if that is larger. NaN equals NaN. Not compared: names of scenes, the
 //! numbers in a status, and the noise of residuals.
 
 use super::snapshot::{Recorded, Snapshot};
+use crate::explain::report;
 use serde_json::{Map, Value, json};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
@@ -79,12 +80,20 @@ pub fn compare_within(a: &Snapshot, b: &Snapshot, tolerance: f64) -> Differences
 /// What is compared of a snapshot, except its scene.
 fn tree(snapshot: &Snapshot) -> Value {
     let state = &snapshot.state;
+    let scene = compiled(snapshot);
+    let interventions = snapshot.interventions.iter().map(|applied| {
+        let words = scene.as_ref().map_or_else(
+            || format!("{:?}", applied.intervention),
+            |scene| report::intervention(&scene.model, &applied.intervention),
+        );
+        format!("after minor iteration {}: {words}", applied.step)
+    });
     // JSON makes them null.
     let text = format!("{state:?}");
     let words = text.split(|c: char| !c.is_alphanumeric() && c != '-');
     let not_finite = words.filter(|word| ["NaN", "inf", "-inf"].contains(word));
     json!({
-        "interventions": snapshot.interventions,
+        "interventions": interventions.collect::<Vec<_>>(),
         "steps": snapshot.steps,
         "position": snapshot.position,
         "state": state,
@@ -107,6 +116,7 @@ fn name(key: &str) -> &str {
         "before" => "residual before",
         "after" => "residual after",
         "scale" => "force scale",
+        "interventions" => "intervention",
         "slaves" => "slave node",
         "displacements" => "node",
         "shear" => "shear force",
@@ -210,7 +220,6 @@ impl Differences {
                     self.row(node, field, both, Some((apart, allowed)));
                 }
             }
-            ("interventions", ..) => self.exact(node, field, a, b),
             ("" | "position" | "state", _, Value::Object(a), Value::Object(b)) => {
                 self.objects(node, "", a, b);
             }
@@ -262,7 +271,11 @@ fn force(state: &Recorded) -> f64 {
 
 fn length(snapshot: &Snapshot) -> f64 {
     // An invalid scene has no size; its lengths are compared relative to themselves.
-    Scene::from_spec(&snapshot.name, snapshot.scene.clone()).map_or(0.0, |s| s.model.length)
+    compiled(snapshot).map_or(0.0, |scene| scene.model.length)
+}
+
+fn compiled(snapshot: &Snapshot) -> Option<Scene> {
+    Scene::from_spec(&snapshot.name, snapshot.scene.clone()).ok()
 }
 
 /// A status without its numbers, which may differ by round-off.

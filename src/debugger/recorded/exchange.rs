@@ -194,7 +194,10 @@ impl ExchangeReader {
             (Answer::Hello(hello), _) => self.hello = Some(*hello),
             (Answer::Scene(sent), _) if self.met.is_none() => {
                 let hello = self.hello.clone().ok_or(Fault::NoScene)?;
-                let (scene, ids, start) = decode::start(name, &sent, None)?;
+                let mut known = hello.parameters.iter();
+                let increment = known.find(|known| known.name == orders::INCREMENT);
+                let increment = increment.and_then(|known| known.value.as_f64());
+                let (scene, ids, start) = decode::start(name, &sent, increment)?;
                 self.met = Some(Greeting {
                     scene,
                     hello,
@@ -212,9 +215,9 @@ impl ExchangeReader {
             }
             (Answer::Ok, Some(request)) => {
                 let met = self.met.as_ref().ok_or(Fault::NoScene)?;
-                let friction = self.state(met).controls.friction.first();
-                let now = friction.copied().unwrap_or_default();
-                orders::add(&mut self.changed, &request, &met.ids, now);
+                let now = self.state(met).controls.friction.clone();
+                let contacts = &met.scene.model.contacts;
+                orders::add(&mut self.changed, &request, &met.ids, &now, contacts);
             }
             _ => {}
         }

@@ -47,9 +47,12 @@ impl Session {
             controls, outside, ..
         } = &self.frame().state;
         match outside {
-            Some(_) => self
-                .connection
-                .intervention(path.trim(), value.trim(), controls),
+            Some(_) => self.connection.intervention(
+                path.trim(),
+                value.trim(),
+                controls,
+                &self.timeline.model().contacts,
+            ),
             None => CurrentScene {
                 scene: &self.scene,
                 controls,

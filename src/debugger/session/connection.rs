@@ -1,10 +1,13 @@
 //! The connection of a session with its solver: what the solver can do, the state that it is in, and its loss.
 
 use super::timeline::Timeline;
+use crate::recorded::orders::changed_friction;
 use crate::refusal::{Refusal, refusal};
 use crate::{Log, Strip};
 use stickslip_core::step::state::Controls;
-use stickslip_core::{Capabilities, Friction, Intervention, RewindSupport, State, counted};
+use stickslip_core::{
+    Capabilities, Contact, Friction, Intervention, RewindSupport, State, counted,
+};
 use stickslip_scene::joined;
 
 /// A solver as its session sees it.
@@ -110,31 +113,33 @@ impl Connection {
         path: &str,
         value: &str,
         controls: &Controls,
+        contacts: &[Contact],
     ) -> Result<Intervention, Refusal> {
         let number = || {
             let number: Option<f64> = value.parse().ok();
             number.ok_or_else(|| refusal!("{value} is not a number"))
         };
-        let now = controls.friction.first().copied().unwrap_or_default();
+        let now = &controls.friction;
         let known = &self.offers.parameters;
         let parameter = known.iter().find(|known| known.name == path);
         Ok(match (path, parameter) {
             ("increment" | "history.increment", _) => Intervention::Increment(number()?),
             ("friction", Some(_)) => {
-                Intervention::Friction(Friction::from_coefficient(number()?, now.cohesion))
+                let mu = number()?;
+                changed_friction(now, contacts, |f| {
+                    Friction::from_coefficient(mu, f.cohesion)
+                })
             }
-            ("friction.angle", _) if self.offers.friction => Intervention::Friction(Friction {
-                angle: number()?,
-                ..now
-            }),
+            ("friction.angle", _) if self.offers.friction => {
+                let angle = number()?;
+                changed_friction(now, contacts, |f| Friction { angle, ..f })
+            }
             ("friction.angle", _) => {
                 return Err(Refusal::new(self.offers.lacks("a friction change")));
             }
             ("cohesion" | "friction.cohesion", _) if self.offers.cohesion => {
-                Intervention::Friction(Friction {
-                    cohesion: number()?,
-                    ..now
-                })
+                let cohesion = number()?;
+                changed_friction(now, contacts, |f| Friction { cohesion, ..f })
             }
             ("cohesion" | "friction.cohesion", _) => {
                 return Err(Refusal::new(self.offers.lacks("a cohesion change")));

@@ -5,12 +5,13 @@ use super::progress::{LessonProgress, ProgressStore};
 use super::question::{AnswerKind, TutorQuestion};
 use super::tutor::Tutor;
 use crate::action::Action;
+use crate::explain::report;
 use crate::recorded::exchange;
 use crate::refusal::{Refusal, refusal};
 use crate::{Command, Recording, Session, Unit};
 use std::sync::Arc;
 use stickslip_core::counted;
-use stickslip_scene::{SceneError, sig4};
+use stickslip_scene::{SceneError, shortest, sig4};
 
 /// Maximum number of minor iterations that provide the predictions of a step.
 const MOST_STEPS: u32 = 1000;
@@ -119,8 +120,14 @@ fn advance(
                     hint: tutor.task_hint.clone(),
                 });
                 if !tutor.is_read() {
+                    let frame = session.frame();
+                    let event = frame.event.as_ref();
+                    let end = event.map_or_else(String::new, |event| {
+                        let load = shortest(event.load_factor);
+                        format!("load {load}, {}", report::outcome(session.model(), event))
+                    });
                     return Err(fault(refusal!(
-                        "the solution does not reach the goal: {}",
+                        "the solution does not reach the goal; it ends at {end} {}",
                         tutor.last_reply()
                     )));
                 }

@@ -11,7 +11,8 @@ use std::path::{Path, PathBuf};
 use stickslip_platform::disk;
 use stickslip_platform::files::{self, FileError};
 use stickslip_platform::input;
-use stickslip_scene::format::notation;
+use stickslip_scene::format::{notation, read};
+use stickslip_scene::readers::FileKind;
 
 /// Format version written by this program, and the only one it reads.
 pub const FORMAT: u32 = 1;
@@ -47,7 +48,7 @@ pub struct Progress {
     format: u32,
     /// Who handed it in; empty in the user's own file.
     #[serde(default, skip_serializing_if = "String::is_empty")]
-    pub(super) name: String,
+    pub name: String,
     pub(super) lessons: BTreeMap<String, LessonProgress>,
 }
 
@@ -79,10 +80,16 @@ impl Progress {
         let text = input::text(file, BYTES, "delete it to start again")
             .map_err(|why| refusal!("{at}: lesson progress cannot be read: {why}"))?;
         let read: Progress = notation::read(&text).map_err(|e| {
-            let (line, why) = (e.span.start.line, e.code);
-            refusal!(
-                "{at}:{line}: lesson progress cannot be read: {why}; delete the file to start again"
-            )
+            let line = e.span.start.line;
+            let why = match FileKind::from_text(&text) {
+                Some(kind) => format!("this is {}", kind.name()),
+                None => read::plainly(&e.code),
+            };
+            let next = match place().is_some_and(|own| own == file) {
+                true => "delete the file to start again",
+                false => "`stickslip lesson --work FILE` writes a file to hand in",
+            };
+            refusal!("{at}:{line}: lesson progress cannot be read: {why}; {next}")
         })?;
         match read.format {
             FORMAT => Ok(read.renamed()),

@@ -100,6 +100,18 @@ described! {
     }
 }
 
+impl LoadSpec {
+    /// The amplitude.
+    pub fn scale(&self) -> &Scale {
+        use LoadSpec::*;
+        match self {
+            Force { scale, .. } | Moment { scale, .. } | Traction { scale, .. } => scale,
+            Pressure { scale, .. } | Volume { scale, .. } | Expansion { scale, .. } => scale,
+            Displacement { scale, .. } => scale,
+        }
+    }
+}
+
 /// Piecewise-linear amplitude of a load: points `(load factor of the scene, factor of this load)` with ascending load factors;
 /// constant beyond its ends. Without points, the load factor itself.
 pub type Scale = Vec<(f64, f64)>;

@@ -57,7 +57,7 @@ described! {
             node: Option<String>,
         },
         /// Distance of a stuck slave node from its stick point along the surface (length, with the sign of slip; 0 if it slides
-        /// or is free), or the one with the largest magnitude.
+        /// or is free), or the one with the largest magnitude. The elastic slip of a pair with `stick` does not count.
         Drift {
             /// Name of the slave node. Default: the one with the largest drift.
             #[serde(default)]

@@ -8,6 +8,7 @@ use super::spec::Spec;
 use crate::shown;
 use ron::error::SpannedError;
 use serde::de::DeserializeOwned;
+use std::borrow::Cow;
 use stickslip_exchange::FormatError;
 use stickslip_platform::input::{self, Unreadable};
 
@@ -27,7 +28,17 @@ pub(crate) fn problem(file: &str, text: &str) -> Result<Problem, SceneError> {
 /// Reads a file that contains one value; messages call it a `what`.
 pub fn value<T: DeserializeOwned>(file: &str, text: &str, what: &str) -> Result<T, SceneError> {
     shallow(file, text, what)?;
-    notation::read(text).map_err(|error| unreadable(file, text, what, &error))
+    let mut read = notation::read(text);
+    // `none`, as the manual writes an absent value, is RON's `None`.
+    let mut spelt = Cow::Borrowed(text);
+    while let Err(error) = &read
+        && let absent = locate(&spelt, &path_of(&spelt, error))
+        && spelt.get(absent.clone()) == Some("none")
+    {
+        spelt.to_mut().replace_range(absent, "None");
+        read = notation::read(&spelt);
+    }
+    read.map_err(|error| unreadable(file, text, what, &error))
 }
 
 /// Rejects a text whose brackets are nested deeper than in any valid file; messages call it a `what`.
@@ -49,9 +60,10 @@ fn unreadable(file: &str, text: &str, what: &str, error: &SpannedError) -> Scene
     let cursor = (error.span.start.line, error.span.start.col);
     // If a whole value is wrong, report its start. Otherwise report ron's cursor: the start of its span is closer to the error
     // than the end.
-    let (at, message) = match (expected(text, error, what), &error.code) {
-        (Some(_), _) if is_at_end(text, error) => (cursor, message(&ron::Error::Eof, what)),
-        (Some(wanted), _) if !path.0.is_empty() => {
+    let (at, message) = match (brackets(text, error), expected(text, error, what)) {
+        (Some(message), _) => (cursor, message),
+        (_, Some(_)) if is_at_end(text, error) => (cursor, message(&ron::Error::Eof, what)),
+        (_, Some(wanted)) if !path.0.is_empty() => {
             let shown = shortened(text.get(value).unwrap_or_default());
             let message = match shown.as_str() {
                 "" => format!("{wanted} is missing"),
@@ -59,8 +71,10 @@ fn unreadable(file: &str, text: &str, what: &str, error: &SpannedError) -> Scene
             };
             (of_value, message)
         }
-        (_, code @ ron::Error::MissingStructField { .. }) => (of_value, message(code, what)),
-        (_, code) => (cursor, message(code, what)),
+        _ => match &error.code {
+            code @ ron::Error::MissingStructField { .. } => (of_value, message(code, what)),
+            code => (cursor, message(code, what)),
+        },
     };
     SceneError {
         file: file.to_owned(),
@@ -68,6 +82,25 @@ fn unreadable(file: &str, text: &str, what: &str, error: &SpannedError) -> Scene
         set: None,
         path: path.to_string(),
         message,
+    }
+}
+
+/// What to write instead of a variant without its fields, or with brackets but without fields.
+fn brackets(text: &str, error: &SpannedError) -> Option<String> {
+    use ron::Error as E;
+    let start = error.span.start;
+    let (before, after) = text.split_at_checked(byte_at(text, start.line, start.col))?;
+    let is_letter = |c: char| c.is_alphanumeric() || c == '_';
+    let word = &before[before.trim_end_matches(is_letter).len()..];
+    match error.code {
+        _ if !word.starts_with(char::is_uppercase) => None,
+        E::ExpectedComma if after.starts_with('(') => {
+            Some(format!("{word} has no fields; write it without brackets"))
+        }
+        E::ExpectedStructLike | E::ExpectedNamedStructLike(_) => Some(format!(
+            "{word} needs its fields in round brackets: {word}(...)"
+        )),
+        _ => None,
     }
 }
 
@@ -231,14 +264,13 @@ fn message(error: &ron::Error, what: &str) -> String {
     use ron::Error as E;
     match error {
         E::ExpectedStructLike | E::ExpectedNamedStructLike(_) => {
-            let second = match what {
-                "scene" => "nodes",
-                "study" => "vary",
-                _ => "steps",
+            let fields = match what {
+                "scene" => "title: \"...\", nodes: [...]",
+                "study" => "title: \"...\", vary: [...]",
+                "configuration" => "colours: dark, mouse: false",
+                _ => "title: \"...\", steps: [...]",
             };
-            format!(
-                "a {what} is a list of fields in round brackets, (title: \"...\", {second}: [...], ...)"
-            )
+            format!("a {what} is a list of fields in round brackets, ({fields}, ...)")
         }
         E::ExpectedStructLikeEnd => {
             "expected a closing bracket, ); there are too many values, or it is missing".to_owned()

@@ -595,6 +595,26 @@ impl Default for History {
     }
 }
 
+impl Spec {
+    /// Notes about values without effect.
+    pub fn notes(&self) -> Vec<String> {
+        let is_nothing =
+            |scale: &Scale| !scale.is_empty() && scale.iter().all(|(_, by)| *by == 0.0);
+        let loads = self.loads.iter().enumerate();
+        let loads = loads.filter(|(_, load)| is_nothing(load.scale()));
+        let loads = loads.map(|(k, _)| format!("loads[{k}] is 0 at every load factor (scale)"));
+        let is_ignored = |slave: &SlaveSpec| {
+            slave.start == Mode::Free && (slave.state.f_n, slave.state.f_t) != (0.0, 0.0)
+        };
+        let slaves = self.slaves.iter().enumerate();
+        let slaves = slaves.filter(|(_, slave)| is_ignored(slave));
+        let slaves = slaves.map(|(k, _)| {
+            format!("slaves[{k}].state: f_n and f_t have no effect on nodes that start free")
+        });
+        loads.chain(slaves).collect()
+    }
+}
+
 impl History {
     /// Increment size on a leg of the path.
     pub fn on_leg(&self, leg: usize) -> f64 {

@@ -41,7 +41,13 @@ impl Names {
             {
                 Ok(entry.nodes.clone())
             }
-            _ => Ok(vec![self.node(name)?]),
+            (entry, _) => {
+                let node = self.node(name).map_err(|why| match entry.kind {
+                    EntryKind::Given => why,
+                    _ => format!("{why}, or all of them: {:?}", format!("{name}.all")),
+                });
+                Ok(vec![node?])
+            }
         }
     }
 

@@ -110,7 +110,7 @@ fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
             row(Some(&decision), decision.before)
         }
         None if short && row_fits && count > 0 => row(None, view.mode(slave)),
-        Some(decision) if (crowded || table(&decision).is_none()) && !hidden => {
+        Some(decision) if (crowded || !has_cells(&decision)) && !hidden => {
             vec![fired(&decision, view.differs(slave), theme)]
         }
         Some(decision) if (inner.height as usize) < GRID => choices(decision.before, theme),
@@ -429,6 +429,11 @@ fn table(decision: &Decision) -> Option<[[[&'static str; 2]; 3]; 3]> {
         (Rule::Theirs, None) => None,
         (rule, _) => Some(names::table(rule)),
     }
+}
+
+/// Whether a table decided on this node alone.
+fn has_cells(decision: &Decision) -> bool {
+    table(decision).is_some_and(|[[[first, _], ..], ..]| !first.is_empty())
 }
 
 const NEWTON: &str = "Newton";

@@ -14,7 +14,7 @@
 //! the first is written. Each file is read back and compared step by step with the problem before it is
 //! returned ([`compared`]).
 
-use crate::explain::core::Core;
+use crate::explain::core::{Core, cycle as cycle_of};
 use crate::explain::cycles;
 use crate::explain::names;
 use crate::refusal::{Refusal, refusal};
@@ -87,15 +87,11 @@ impl Origin {
 /// # Errors
 /// If it cannot be written.
 pub fn core(model: &Model, origin: &Origin, cycle: &Cycle, core: &Core) -> Result<String, Refusal> {
-    let of_core = Cycle {
-        members: core
-            .cycle
-            .members
-            .iter()
-            .map(|(place, modes)| (core.problem.nodes[*place].slave, modes.clone()))
-            .collect(),
-        ..core.cycle.clone()
-    };
+    let problem = core.on_cycle();
+    let mut of_core = cycle_of(&problem).unwrap_or_else(|| core.cycle.clone());
+    for (place, _) in &mut of_core.members {
+        *place = problem.nodes[*place].slave;
+    }
     let named = |slave: usize| names::slave(model, slave);
     let names = joined(
         core.problem.nodes.iter().map(|node| named(node.slave)),
@@ -111,7 +107,7 @@ pub fn core(model: &Model, origin: &Origin, cycle: &Cycle, core: &Core) -> Resul
         "Core of {}: {}, period {}",
         origin.scene, names, core.cycle.period
     );
-    text(model, &core.on_cycle(), title, head.into())
+    text(model, &problem, title, head.into())
 }
 
 /// The nodes that can be written: those that face a surface and can move.
@@ -252,7 +248,7 @@ pub fn siconos(model: &Model, problem: &InterfaceProblem) -> Result<Local, Refus
     if let Some(node) = nodes().find(|node| node.friction.cohesion != 0.0) {
         let name = names::slave(model, node.slave).to_owned();
         return Err(refusal!(
-            "{name} has cohesion, which the Siconos format does not support; export a .ron file instead"
+            "{name} has cohesion, which only .ron files support; export one instead"
         ));
     }
     let mu = nodes().map(|node| node.friction.coefficient()).collect();

@@ -18,7 +18,7 @@ use stickslip_core::plane::distance;
 use stickslip_core::{
     ContactRecord, Mode, Model, Outcome, Status, Stepper, SurfaceElement, counted,
 };
-use stickslip_scene::{shortest, sig4};
+use stickslip_scene::{shortest, shown, sig4};
 use stickslip_study::drawn::PlotError;
 use stickslip_study::origin;
 use stickslip_study::placing::{OccupiedArea, Patch};
@@ -583,6 +583,8 @@ fn table(sheet: &mut Sheet, shown: &ExportState, rows: &[usize]) -> Result<(), P
         ("T_max", 820.0),
         ("F_n / A", 950.0),
     ];
+    /// Characters of a name that fit left of its mode.
+    const NAME: usize = 20;
     let part = sheet.width / WIDTH;
     let wide = |x: f64| x * part;
     let mut y = sheet.height + 0.6 * SMALL;
@@ -608,7 +610,7 @@ fn table(sheet: &mut Sheet, shown: &ExportState, rows: &[usize]) -> Result<(), P
         );
         sheet.text(
             (MARGIN + 40.0, y),
-            names::slave(model, slave),
+            &shown::cut(names::slave(model, slave), NAME),
             SMALL,
             BLACK,
             Anchor::Left,

@@ -19,12 +19,8 @@ macro_rules! walk_field {
         )
     };
     ($field:ident, $place:ident, $visit:ident, given) => {
-        if let Some(given) = $field {
-            $crate::format::described::Described::walk(
-                given,
-                &$place.field(stringify!($field)),
-                $visit,
-            )
+        if $field.is_some() {
+            $crate::format::described::macros::walk_field!($field, $place, $visit)
         }
     };
     ($field:ident, $place:ident, $visit:ident, name) => {
