@@ -221,6 +221,7 @@ fn a_node_goes_back_to_the_side_that_it_came_along_where_friction_is_below_the_l
             surfaces,
             positions: &positions,
             same_force: 1e-9,
+            unclosed: 0.0,
         };
         let least = least_friction(&friction, half, 2.0);
         for (anchor, sign) in came.into_iter().zip([-1.0, 1.0]) {

@@ -90,7 +90,7 @@ pub fn geometric_tangent(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::projection::{project, projection_at};
+    use crate::contact::projection::{project, projection_apart};
     use crate::contact::smooth::smooth;
     use crate::model::{Node, Surface};
 
@@ -110,7 +110,7 @@ mod tests {
     ) -> Vec<f64> {
         let slave = place(carriers, positions);
         let spot = project(slave, surfaces, &[0], positions, None).unwrap();
-        let at = projection_at(surfaces, spot, positions, slave);
+        let at = projection_apart(true, surfaces, spot, positions, slave);
         let t = tangent(at.normal);
         let force = [0, 1].map(|a| f[0] * at.normal[a] + f[1] * t[a]);
         let mut all = vec![0.0; 2 * positions.len()];
@@ -132,7 +132,7 @@ mod tests {
         let (surfaces, f) = ([surface], [2.0, -0.7]);
         let slave = place(carriers, x);
         let spot = project(slave, &surfaces, &[0], x, None).unwrap();
-        let at = projection_at(&surfaces, spot, x, slave);
+        let at = projection_apart(true, &surfaces, spot, x, slave);
         let curve = at.curve.unwrap();
         let nodes = &surfaces[0].elements[spot.element];
         let variation = |dof: usize| {
@@ -176,6 +176,15 @@ mod tests {
                 x.extend(arc(m));
                 check(surface(m), &x, &[(0, 1.0)], &format!("m {m} gap {gap}"));
             }
+        }
+    }
+
+    #[test]
+    fn the_geometric_tangent_of_a_node_that_turns_around_a_vertex_is_exact() {
+        let valley = Surface::new("s", vec![vec![1, 2], vec![2, 3]], false);
+        for at in [[0.02, -0.3], [-0.05, -0.8]] {
+            let x = [at, [1.0, 0.2], [0.0, 0.0], [-1.0, 0.1]];
+            check(valley.clone(), &x, &[(0, 1.0)], &format!("{at:?}"));
         }
     }
 

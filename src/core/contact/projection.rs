@@ -16,6 +16,10 @@ const END_TOLERANCE: f64 = 1e-9;
 const STAY_TOLERANCE: f64 = 1e-12;
 /// Relative difference below which two distances are equal up to round-off.
 const NEARLY: f64 = 1e-9;
+/// Depth below a vertex, relative to the element's length, from which the direction to the node is known.
+const DEEP: f64 = 1e-9;
+/// Radius of a vertex, relative to the distance of the node that turns around it.
+const VERTEX: f64 = 1e-9;
 /// Coordinates ξ closer than this belong to the same closest point: their distances differ only by round-off.
 const NEXT_TO: f64 = 1e-6;
 
@@ -61,6 +65,25 @@ impl Projection {
 }
 
 impl Projection {
+    /// The same point, a vertex of the chain, for a slave node at `slave` that turns around it: the vertex acts like an arc with a
+    /// negligible radius.
+    fn around(self, slave: [f64; 2]) -> Projection {
+        let to = minus(slave, self.foot);
+        let away = length(to) * self.gap.signum();
+        let radius = VERTEX * length(to);
+        let normal = to.map(|part| part / away);
+        Projection {
+            normal,
+            gap: away,
+            shape_slope: [0.0; MAX_NODES],
+            curve: Some(Curve {
+                slope: tangent(normal).map(|t| radius * t),
+                bend: normal.map(|n| -radius * n * away.signum()),
+            }),
+            ..self
+        }
+    }
+
     /// √m / (m − g k) (1 / length), with m and k of [`crate::contact::geometric_tangent`]. `None` at an end of the element.
     pub fn lever(&self) -> Option<f64> {
         let Curve { slope, bend } = self.curve?;
@@ -321,6 +344,25 @@ pub fn projection_at(
             slope,
             bend: places.sum(&s.dd),
         }),
+    }
+}
+
+/// [`projection_at`] for a contact that transmits forces across a distance if `apart` ([`crate::model::Contact::is_apart`]): a node
+/// that has penetrated both sides of a vertex, which is then its closest point, turns around it.
+pub fn projection_apart(
+    apart: bool,
+    surfaces: &[Surface],
+    spot: SurfacePoint,
+    positions: &[[f64; 2]],
+    slave: [f64; 2],
+) -> Projection {
+    let here = projection_at(surfaces, spot, positions, slave);
+    let surface = &surfaces[spot.surface];
+    let is_vertex = || here.curve.is_none() && neighbour(surface, spot).is_some();
+    if apart && is_vertex() && here.gap < -DEEP * element_size(surface, spot, positions) {
+        here.around(slave)
+    } else {
+        here
     }
 }
 

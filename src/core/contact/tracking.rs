@@ -17,7 +17,7 @@ use crate::contact::facing::{MOST, faced, is_piece};
 use crate::contact::point_force;
 use crate::contact::projection::{
     Projection, STRAIGHT, border, element_size, mean_normal, neighbour, normal, point_on_side,
-    project, projection_at, sharpen, slopes_at_border, tangent,
+    project, projection_apart, projection_at, sharpen, slopes_at_border, tangent,
 };
 use crate::contact::stick_point::distance;
 use crate::contact::table1::t_max;
@@ -37,6 +37,8 @@ pub struct Ground<'a> {
     pub positions: &'a [[f64; 2]],
     /// Forces that differ by less than this (force) count as equal.
     pub same_force: f64,
+    /// Fraction of the initial overlaps that is still open.
+    pub unclosed: f64,
 }
 
 impl Ground<'_> {
@@ -71,7 +73,7 @@ impl Ground<'_> {
         let (previous, force, was_held) = (node.spot, node.force(), node.corner.is_some());
         let (second, mean) = (node.second, node.normal);
         let mut is_released = false;
-        if !slave.bond.is_hard() || slave.overlap > 0.0 {
+        if slave.is_apart(self.unclosed) {
             // Compliant bonds and overlaps transmit forces across a distance: such nodes are not held in corners, and the law of a
             // single side applies.
             node.spot = self.find(node.mode, slave, at, previous);
@@ -106,7 +108,8 @@ impl Ground<'_> {
         match node.spot {
             Some(spot) => {
                 if node.second.is_none() {
-                    let over = projection_at(self.surfaces, spot, self.positions, at);
+                    let apart = slave.is_apart(self.unclosed);
+                    let over = projection_apart(apart, self.surfaces, spot, self.positions, at);
                     node.normal = if node.corner.is_some() || over.curve.is_none() {
                         self.border_normal(spot, node.f_n, &over)
                     } else {
@@ -154,11 +157,10 @@ impl Ground<'_> {
         }
         // A node that presses on an element with local flexibility penetrates by the local deflection.
         let gives = point_force::of(surface, spot).is_some();
-        let touches = slave.bond.is_hard() && slave.overlap == 0.0 && !gives;
-        Some(if touches {
-            spot
-        } else {
+        Some(if slave.is_apart(self.unclosed) || gives {
             sharpen(at, self.surfaces, spot, self.positions)
+        } else {
+            spot
         })
     }
 

@@ -41,6 +41,8 @@ pub struct Bodies {
     stresses_known: Vec<bool>,
     /// Whether any contact starts inside and is pushed out over the first leg.
     overlaps: bool,
+    /// Fraction of these overlaps that is still open.
+    unclosed: f64,
     /// Whether any bond has a compliance along n.
     gives: bool,
     /// Contacts over elements with local flexibility in the last accepted state.
@@ -97,6 +99,7 @@ impl Bodies {
                 .iter()
                 .any(|contact| contact.bond.give()[0] > 0.0),
             points: PointForces::default(),
+            unclosed: 0.0,
             model,
         }
     }
@@ -109,6 +112,7 @@ impl Bodies {
             positions: &self.system.positions,
             // Small enough that the judge does not detect the difference.
             same_force: 0.5 * (TIMES * norms.limit).max(TOLERANCE) * norms.scale,
+            unclosed: self.unclosed,
         }
     }
 
@@ -194,7 +198,9 @@ impl Source for Bodies {
         contacts: &mut [ContactState],
         friction: &[Friction],
         anew: bool,
+        unclosed: f64,
     ) {
+        self.unclosed = unclosed;
         self.system.place(&self.model, u);
         let slaves = &self.model.contacts;
         self.ground().follow(contacts, slaves, friction, anew);

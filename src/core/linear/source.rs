@@ -205,13 +205,15 @@ pub trait Source: Send {
     }
 
     /// Finds the position of every contact in a state: surface point, normal, stick point and drift. With `anew`, a sliding
-    /// contact takes its stick point along. `friction` is the current one, by contact.
+    /// contact takes its stick point along. `friction` is the current one, by contact; `unclosed` is the fraction of the initial
+    /// overlaps that is still open ([`crate::Model::unclosed`]).
     fn follow(
         &mut self,
         u: &[f64],
         contacts: &mut [ContactState],
         friction: &[Friction],
         anew: bool,
+        unclosed: f64,
     );
 
     /// Sets the stick points of contacts whose initial state has slip.

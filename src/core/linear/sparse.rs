@@ -117,6 +117,7 @@ impl SparseInterface {
             surfaces: &self.model.surfaces,
             positions: &self.positions,
             same_force: SETTLED * self.norms.scale,
+            unclosed: 0.0,
         }
     }
 
@@ -297,6 +298,7 @@ impl Source for SparseInterface {
         contacts: &mut [ContactState],
         friction: &[Friction],
         anew: bool,
+        _unclosed: f64,
     ) {
         self.place(u);
         let slaves = &self.model.contacts;

@@ -5,7 +5,7 @@
 //! neither allocates, unless a slave node moves to another deformable master element.
 
 use crate::contact::geometric_tangent::{Variation, geometric_tangent};
-use crate::contact::projection::{Projection, projection_at, tangent};
+use crate::contact::projection::{Projection, projection_apart, tangent};
 use crate::contact::stick_point::room;
 use crate::executor::{Executor, SequentialExecutor};
 use crate::fem::assembly::{Assembly, AssemblyMotion};
@@ -218,13 +218,16 @@ impl System {
         self.scaled = false;
         self.copied = false;
         self.place(model, at.u);
+        let unclosed = model.unclosed(at.leg, at.target);
         for (interface, (node, slave)) in self
             .interfaces
             .iter_mut()
             .zip(at.contacts.iter().zip(&model.contacts))
         {
             let point = self.positions[slave.node];
-            let over = |spot| projection_at(&model.surfaces, spot, &self.positions, point);
+            let apart = slave.is_apart(unclosed);
+            let over =
+                |spot| projection_apart(apart, &model.surfaces, spot, &self.positions, point);
             interface.projection = node.spot.map(over).map(|here| match node.second {
                 Some(_) => here.along(node.normal, point),
                 // The force may rotate the sides of a border between elements.

@@ -132,6 +132,12 @@ impl Contact {
         }
     }
 
+    /// Whether it transmits forces across a distance: with a compliance, or an initial overlap of which the fraction `unclosed` is
+    /// still open.
+    pub fn is_apart(&self, unclosed: f64) -> bool {
+        !self.bond.is_hard() || self.overlap * unclosed > 0.0
+    }
+
     /// The nodes on which its force acts, with their weights.
     pub fn carriers(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
         let own = self.weights.is_empty().then_some((self.node, 1.0));

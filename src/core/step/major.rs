@@ -294,7 +294,11 @@ impl Iterate {
         let settings = self.state.settings();
         let anew = settings.slip == SlipCount::Major && settings.sticking == Sticking::Anchored;
         let (u, friction) = (&self.state.u, &self.state.controls.friction);
-        self.source.follow(u, &mut self.state.nodes, friction, anew);
+        let unclosed = self
+            .model
+            .unclosed(self.state.start.leg, self.state.major.target);
+        self.source
+            .follow(u, &mut self.state.nodes, friction, anew, unclosed);
         self.linearised = false;
     }
 }

@@ -50,7 +50,14 @@ impl Source for Stiffening {
         vec![0.0; 2]
     }
 
-    fn follow(&mut self, w: &[f64], contacts: &mut [ContactState], _: &[Friction], anew: bool) {
+    fn follow(
+        &mut self,
+        w: &[f64],
+        contacts: &mut [ContactState],
+        _: &[Friction],
+        anew: bool,
+        _: f64,
+    ) {
         let here = SurfacePoint {
             surface: 0,
             element: 0,
