@@ -9,7 +9,7 @@ use crate::unmatched;
 use std::collections::BTreeMap;
 use stickslip_core::contact::element::closed;
 use stickslip_core::contact::facing::{MOST as MOST_SURFACES, faced};
-use stickslip_core::contact::projection::{project, projection_at};
+use stickslip_core::contact::projection::{project, projection_apart, projection_at};
 use stickslip_core::fem::lagrange;
 use stickslip_core::groups::{distinct, marked};
 use stickslip_core::plane::{dot, plus, range};
@@ -334,9 +334,14 @@ pub(super) fn adjust(nodes: &mut [Node], surfaces: &[Surface], contacts: &[Conta
 
 /// Records the initial penetration of the slave nodes, to be closed over the first leg.
 pub(super) fn ramp(nodes: &[Node], surfaces: &[Surface], contacts: &mut [Contact]) {
+    let places: Vec<[f64; 2]> = nodes.iter().map(|node| node.at).collect();
     let stands = stands(nodes, surfaces, contacts);
     for (contact, stand) in contacts.iter_mut().zip(stands) {
-        contact.overlap = stand.map_or(0.0, |(_, gap)| (-gap).max(0.0));
+        contact.overlap = stand.map_or(0.0, |(spot, _)| {
+            let at = places[contact.node];
+            let over = projection_apart(true, surfaces, spot, &places, at);
+            (-over.gap).max(0.0)
+        });
     }
 }
 

@@ -307,14 +307,14 @@ fn a_press_fit_warns_of_nodes_past_the_ends_and_with_past_ends_all_are_ramped() 
                sides: (left: Arc(center: (0, 0)), right: Arc(center: (0, 0))))"
         )
     };
-    let fit = |past: &str| {
+    let fit = |past: &str, smooth: bool, increment: f64| {
         read(&format!(
             "(title: \"t\", nodes: [{}, {}], materials: [Elastic(id: \"m\", E: 1000, nu: 0.3, plane: stress, update: small)],
               bodies: [Solid(id: \"in\", mesh: \"in\", material: \"m\"), Solid(id: \"out\", mesh: \"out\", material: \"m\")],
-              surfaces: [(id: \"bore\", along: \"out.left\", smooth: true{past})], slaves: [(nodes: [\"in.right\"], on: [\"bore\"])],
+              surfaces: [(id: \"bore\", along: \"out.left\", smooth: {smooth}{past})], slaves: [(nodes: [\"in.right\"], on: [\"bore\"])],
               supports: [(node: \"in.bottom\", fix: [y]), (node: \"out.bottom\", fix: [y]), (node: \"in.top\", fix: [x]),
                          (node: \"out.top\", fix: [x])],
-              history: (path: [0, 1], increment: 0.5), settings: (initial_gaps: ramp), monitors: [(name: \"p\", of: Pressure())])",
+              history: (path: [0, 1], increment: {increment}), settings: (initial_gaps: ramp), monitors: [(name: \"p\", of: Pressure())])",
             ring("in", 1.0, 2.0),
             ring("out", 1.99, 3.0),
         ))
@@ -323,13 +323,99 @@ fn a_press_fit_warns_of_nodes_past_the_ends_and_with_past_ends_all_are_ramped() 
         let all = warnings(&scene.model).into_iter();
         all.filter(|text| text.contains("past its ends")).count()
     };
-    assert_eq!(missed(&fit("")), 1);
-    let scene = fit(", past_ends: 0.5");
-    assert_eq!(missed(&scene), 0);
-    let half = &finished(&scene).accepted[0];
-    assert!(
-        (half.monitors["p"] / 0.586 - 1.0).abs() < 0.02,
-        "{}",
-        half.monitors["p"]
+    assert_eq!(missed(&fit(", past_ends: 0", true, 0.5)), 1);
+    // Unless told otherwise, the surface continues past its ends on the axes of symmetry.
+    for past in ["", ", past_ends: 0.5"] {
+        for smooth in [true, false] {
+            for increment in [0.5, 0.02] {
+                let scene = fit(past, smooth, increment);
+                let what = format!("{past} {smooth} {increment}");
+                assert_eq!(missed(&scene), 0);
+                let run = finished(&scene);
+                let half = run.accepted.iter().find(|a| a.load > 0.49).unwrap();
+                let p = half.monitors["p"];
+                assert!((p / 0.586 - 1.0).abs() < 0.02, "{what}: {p}");
+                assert!(run.accepted.len() < 60, "{what}");
+            }
+        }
+    }
+}
+
+/// A node on springs of stiffness 1 and 10, pushed out of a valley: until the overlap is closed, it is on a circle around the corner, and
+/// the force points to the corner.
+#[test]
+fn a_node_of_a_press_fit_below_a_corner_turns_around_it() {
+    let from = [1e-4, -0.01];
+    let scene = read(
+        "(title: \"t\", nodes: [Node(id: \"a\", at: (0.0001, -0.01)), Through(id: \"v\", points: [(1, 0.1), (0, 0), (-1, 0.1)], per_element: 2)],
+          materials: [], bodies: [Springs(id: \"k\", bars: [(nodes: [\"a\"], angle: 0, stiffness: 1), (nodes: [\"a\"], angle: 90, stiffness: 10)])],
+          surfaces: [(id: \"v\", along: \"v\")], slaves: [(nodes: [\"a\"], on: [\"v\"])], loads: [],
+          history: (path: [0, 1], increment: 0.25), settings: (initial_gaps: ramp),
+          monitors: [(name: \"x\", of: Displacement(node: \"a\", component: x)), (name: \"y\", of: Displacement(node: \"a\", component: y))])",
     );
+    let overlap = f64::hypot(from[0], from[1]);
+    let run = finished(&scene);
+    assert_eq!(run.accepted.len(), 4);
+    for state in &run.accepted {
+        let moved = ["x", "y"].map(|name| state.monitors[name]);
+        let at = [from[0] + moved[0], from[1] + moved[1]];
+        let radius = f64::hypot(at[0], at[1]);
+        assert!(
+            (radius - (1.0 - state.load) * overlap).abs() < 1e-10,
+            "{at:?}"
+        );
+        // The springs balance a force along the radius.
+        let off = moved[0] * at[1] - 10.0 * moved[1] * at[0];
+        assert!(off.abs() < 1e-9 * radius.max(1e-3), "{off}");
+    }
+}
+
+/// The lower block is as wide as the upper one, which is softer and bulges past it.
+#[test]
+fn blocks_that_end_flush_are_pressed_on_each_other_without_an_increment_cut() {
+    let press = |law: &str, angle: &str| {
+        read(&format!(
+            "(title: \"t\", nodes: [Block(id: \"a\", corners: [(0, 0), (10, 0), (10, 5), (0, 5)], elements: (2, 1)),
+                                  Block(id: \"b\", corners: [(0, 5), (10, 5), (10, 10), (0, 10)], elements: (1, 1))],
+              materials: [Elastic(id: \"m\", E: 1000, nu: 0.3), Elastic(id: \"s\", E: 200, nu: 0.3)],
+              bodies: [Solid(id: \"a\", mesh: \"a\", material: \"m\"), Solid(id: \"b\", mesh: \"b\", material: \"s\")],
+              surfaces: [(id: \"t\", along: \"a.top\")],
+              slaves: [(nodes: [\"b.bottom\"], on: [\"t\"], law: {law})], friction: (angle: {angle}),
+              supports: [(node: \"a.bottom\", fix: [x, y])],
+              loads: [Displacement(node: \"b.top\", component: y, value: -0.5), Displacement(node: \"b.top\", component: x, value: 0)],
+              history: (path: [0, 1], increment: 0.1), monitors: [(name: \"F\", of: Contact(component: y))])"
+        ))
+    };
+    for law in ["Hard", "Penalty(stiffness: 1e5)"] {
+        for angle in ["0", "10", "30"] {
+            let run = finished(&press(law, angle));
+            assert_eq!(run.accepted.len(), 10, "{law} {angle}");
+            let force = run.accepted[9].monitors["F"];
+            // Between free sliding and full adhesion.
+            assert!((150.0..190.0).contains(&force), "{law} {angle}: {force}");
+        }
+    }
+}
+
+#[test]
+fn a_surface_continues_only_where_the_slave_surface_ends_with_it() {
+    let ends = |slave: &str| {
+        let scene = read(&format!(
+            "(title: \"t\", nodes: [Block(id: \"b\", corners: {slave}, elements: (2, 1)), Line(id: \"f\", from: (4, 0), to: (0, 0), elements: 2, per_element: 2),
+                                  Line(id: \"side\", from: (0, 0), to: (0, -2), elements: 1, per_element: 2)],
+              materials: [Elastic(id: \"m\", E: 1, nu: 0)], bodies: [Solid(id: \"b\", mesh: \"b\", material: \"m\")],
+              surfaces: [(id: \"f\", along: \"f\"), (id: \"side\", along: \"side\")], slaves: [(nodes: [\"b.bottom\"], on: [\"f\", \"side\"])],
+              supports: [(node: \"b.top\", fix: [x, y])], loads: [], history: (path: [0, 1], increment: 1))"
+        ));
+        [0, 1].map(|k| scene.model.surfaces[k].past_ends)
+    };
+    assert_eq!(
+        ends("[(0, 0), (4, 0), (4, 1), (0, 1)]"),
+        [[0.2, 0.2], [0.0; 2]]
+    );
+    assert_eq!(
+        ends("[(0, 0), (5, 0), (5, 1), (0, 1)]"),
+        [[0.0, 0.2], [0.0; 2]]
+    );
+    assert_eq!(ends("[(1, 0), (3, 0), (3, 1), (1, 1)]"), [[0.0; 2]; 2]);
 }

@@ -97,14 +97,7 @@ pub fn find(
 /// Whether two surfaces whose ends coincide (0: the start, 1: the end of each) form a concave corner there: past it, each would
 /// continue inside the other.
 pub fn ends_in_corner(surfaces: [&Surface; 2], ends: [usize; 2], positions: &[[f64; 2]]) -> bool {
-    let slopes = [0, 1].map(|k| {
-        let (number, xi) = match ends[k] {
-            0 => (0, -1.0),
-            _ => (surfaces[k].elements.len() - 1, 1.0),
-        };
-        let element = SurfaceElement::from_surface(surfaces[k], number);
-        blend(element.nodes, positions, &element.shape(xi).d)
-    });
+    let slopes = [0, 1].map(|k| end_slope(surfaces[k], ends[k], positions));
     let normals = slopes.map(right_of);
     let half = 0.5
         * cross(normals[0], normals[1])
@@ -116,6 +109,16 @@ pub fn ends_in_corner(surfaces: [&Surface; 2], ends: [usize; 2], positions: &[[f
         out < -PARALLEL
     };
     enters(0) && enters(1) && half > STRAIGHT
+}
+
+/// dx/dξ at an end of a surface (0: its start).
+pub fn end_slope(surface: &Surface, end: usize, positions: &[[f64; 2]]) -> [f64; 2] {
+    let (number, xi) = match end {
+        0 => (0, -1.0),
+        _ => (surface.elements.len() - 1, 1.0),
+    };
+    let element = SurfaceElement::from_surface(surface, number);
+    blend(element.nodes, positions, &element.shape(xi).d)
 }
 
 #[cfg(test)]

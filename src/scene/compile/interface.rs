@@ -23,6 +23,8 @@ pub(super) struct Surfaces {
     pub made: Vec<Surface>,
     /// Index of each surface in the scene's list.
     pub listed: Vec<usize>,
+    /// Whether the program chooses how far a surface continues past its start and its end.
+    pub automatic: Vec<[bool; 2]>,
 }
 
 impl Surfaces {
@@ -48,6 +50,7 @@ pub(super) fn surfaces(
     let mut all = Surfaces {
         made: Vec::with_capacity(spec.surfaces.len()),
         listed: Vec::with_capacity(spec.surfaces.len()),
+        automatic: Vec::with_capacity(spec.surfaces.len()),
     };
     let mut total = 0;
     for (k, surface) in spec.surfaces.iter().enumerate() {
@@ -78,13 +81,14 @@ pub(super) fn surfaces(
                 .collect();
         }
         let several = pieces.len() > 1;
-        if surface.endless && surface.past_ends != 0.0 {
+        let past_ends = surface.past_ends.unwrap_or(0.0);
+        if surface.endless && past_ends != 0.0 {
             bail!(
                 at!["surfaces", k, "past_ends"],
                 "an endless surface has no ends; leave past_ends out"
             );
         }
-        if !(0.0..=1.0).contains(&surface.past_ends) {
+        if !(0.0..=1.0).contains(&past_ends) {
             bail!(
                 at!["surfaces", k, "past_ends"],
                 "must be between 0 and 1, in lengths of the last element"
@@ -111,13 +115,15 @@ pub(super) fn surfaces(
                 surface.id.clone()
             };
             all.listed.push(k);
+            let open = open_ends(*own, &ends);
+            let chosen = surface.past_ends.is_none() && !surface.endless;
+            all.automatic.push(open.map(|open| open && chosen));
             all.made.push(Surface {
                 name,
                 elements,
                 rigid: false,
                 endless: surface.endless,
-                past_ends: open_ends(*own, &ends)
-                    .map(|open| if open { 2.0 * surface.past_ends } else { 0.0 }),
+                past_ends: open.map(|open| if open { 2.0 * past_ends } else { 0.0 }),
                 smooth: Vec::new(),
                 gives: Vec::new(),
             });
@@ -134,6 +140,18 @@ fn moves_alike(spec: &Spec, names: &Names, [a, b]: [usize; 2]) -> bool {
             .nodes(node)
             .is_ok_and(|moved| moved.contains(&a) == moved.contains(&b)),
         _ => true,
+    })
+}
+
+/// Whether a prescribed displacement moves a node along an axis.
+pub(super) fn is_moved(spec: &Spec, names: &Names, node: usize, axis: Component) -> bool {
+    spec.loads.iter().any(|load| match load {
+        LoadSpec::Displacement {
+            node: of,
+            component,
+            ..
+        } => *component == axis && names.nodes(of).is_ok_and(|moved| moved.contains(&node)),
+        _ => false,
     })
 }
 

@@ -102,7 +102,12 @@ impl Layout {
         Ok(loads)
     }
 
-    fn prescribed(&mut self, spec: &Spec, names: &Names) -> Result<Vec<Prescribed>, Fault> {
+    /// Applies prescribed displacements.
+    pub(super) fn prescribed(
+        &mut self,
+        spec: &Spec,
+        names: &Names,
+    ) -> Result<Vec<Prescribed>, Fault> {
         let mut made = Vec::new();
         for (k, load) in spec.loads.iter().enumerate() {
             let LoadSpec::Displacement {
@@ -318,6 +323,15 @@ impl Layout {
     pub(super) fn is_held(&self, node: usize, component: Component) -> bool {
         let dof = self.dofs.dof(node, component);
         !self.on_body[node] || dof.is_none_or(|dof| self.held.contains_key(&dof))
+    }
+
+    /// Whether a node can move along the axis across this one only, or belongs to no body.
+    pub(super) fn is_guided(&self, node: usize, axis: Component) -> bool {
+        let across = match axis {
+            Component::X => Component::Y,
+            _ => Component::X,
+        };
+        self.is_held(node, axis) && !(self.on_body[node] && self.is_held(node, across))
     }
 
     /// Numbers the equations node by node, followed by those of the bodies' internal unknowns.

@@ -1,19 +1,24 @@
 //! Ends of surfaces that coincide. A rigid chain whose ends coincide is closed. Where two rigid surfaces that a node may touch end in
 //! one point, in a concave corner, each continues past it into the body of the other, so that they cross
 //! ([`stickslip_core::contact::crossing`]). A node that starts where two surfaces meet that can move apart presses on both ends and has
-//! a contact with each.
+//! a contact with each. Ends at which slave nodes start, or that are on a line of symmetry, continue a little.
 
 use super::super::corners::{CORNER, turn};
 use super::super::nodes::Names;
 use super::layout::Layout;
-use stickslip_core::contact::crossing::ends_in_corner;
-use stickslip_core::plane::distance;
+use stickslip_core::contact::crossing::{end_slope, ends_in_corner};
+use stickslip_core::plane::{self, distance, dot, minus};
 use stickslip_core::{Component, Contact, Node, Surface};
 
 /// Distance of ends that coincide, relative to the scene's length.
 const SAME: f64 = 1e-9;
 /// How far a surface continues past a corner, in units of ξ of its end element.
 const PAST: f64 = 1.0;
+/// The same at an end with which a slave surface ends: a tenth of the element, as Abaqus extends master surfaces by default.
+const FLUSH: f64 = 0.2;
+/// The same past a line of symmetry. The normal at the end of a curved element is not exactly
+/// along the line, so that the closest point of a node on the line may lie past the end.
+const MIRRORED: f64 = 0.5;
 
 /// The nodes where a chain begins and where it ends.
 pub(super) fn end_nodes(elements: &[Vec<usize>]) -> [Option<usize>; 2] {
@@ -95,6 +100,53 @@ pub(super) fn cross(
                     *past = past.max(PAST);
                 }
             }
+        }
+    }
+}
+
+/// Continues surfaces past the ends for which the scene leaves this to the program: where a slave surface ends with it, and farther
+/// where a slave node and the end are guided along the same line of symmetry, which the surface meets at a right angle up to half of
+/// [`CORNER`].
+pub(super) fn extend(
+    surfaces: &mut [Surface],
+    automatic: &[[bool; 2]],
+    slaves: &[Contact],
+    nodes: &[Node],
+    layout: &Layout,
+    guided: impl Fn(usize, Component) -> bool,
+    length: f64,
+) {
+    let at: Vec<[f64; 2]> = nodes.iter().map(|node| node.at).collect();
+    let axes = [(0, Component::X), (1, Component::Y)];
+    for (on, (surface, automatic)) in (surfaces.iter_mut().zip(automatic)).enumerate() {
+        for (k, end) in end_nodes(&surface.elements).into_iter().enumerate() {
+            let Some(end) = end.filter(|_| automatic[k]) else {
+                continue;
+            };
+            let slope = end_slope(surface, k, &at);
+            let size = plane::length(slope);
+            let outward = if k == 0 { -1.0 / size } else { 1.0 / size };
+            let [mut inside, mut flush, mut beyond, mut mirrored] = [false; 4];
+            let own = slaves.iter().filter(|slave| slave.surfaces.contains(&on));
+            for (node, _) in own.flat_map(Contact::carriers) {
+                let to = minus(at[node], at[end]);
+                let past = outward * dot(to, slope);
+                let moves = axes.iter().any(|(_, axis)| !layout.is_held(node, *axis));
+                inside |= past < -SAME * size;
+                flush |= moves && past.abs() <= SAME * size;
+                beyond |= past > SAME * size;
+                mirrored |= axes.into_iter().any(|(k, axis)| {
+                    to[k].abs() <= SAME * length
+                        && slope[k].abs() >= (0.5 * CORNER).cos() * size
+                        && guided(node, axis)
+                        && guided(end, axis)
+                });
+            }
+            surface.past_ends[k] = match (mirrored, inside && flush && !beyond) {
+                (true, _) => MIRRORED,
+                (_, true) => FLUSH,
+                _ => 0.0,
+            };
         }
     }
 }

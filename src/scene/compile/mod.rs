@@ -101,12 +101,24 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
     )? {
         bodies::check_bodies(spec, &names, &bodies, length)?;
     }
+    let mut supported = Layout::new(on_body.clone(), &bodies);
+    supported.supports(spec, &names)?;
+    let guided = |node, axis| {
+        supported.is_guided(node, axis) && !interface::is_moved(spec, &names, node, axis)
+    };
+    meeting_ends::extend(
+        &mut surfaces.made,
+        &surfaces.automatic,
+        &slaves,
+        &names.nodes,
+        &supported,
+        guided,
+        length,
+    );
     if spec.settings.initial_gaps == InitialGaps::Ramp {
         gaps::ramp(&names.nodes, &surfaces.made, &mut slaves);
     }
-    let mut supported = Layout::new(on_body.clone(), &bodies);
-    supported.supports(spec, &names)?;
-    supported.loads(spec, &names, &bodies)?;
+    supported.prescribed(spec, &names)?;
     meeting_ends::divide(
         &mut names,
         &surfaces.made,
@@ -135,6 +147,7 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
     let Surfaces {
         made: mut surfaces,
         listed,
+        ..
     } = surfaces;
     meeting_ends::cross(
         &mut surfaces,

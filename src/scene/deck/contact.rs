@@ -18,10 +18,6 @@ use stickslip_exchange::inp::deck::{Adjust, Faces, Family, Normal, Pair, Tie};
 /// Without a POSITION TOLERANCE, nodes within this fraction of a side's length are tied, as in CalculiX.
 const TOLERANCE: f64 = 0.025;
 
-/// `past_ends` of a master, because slave and master often end at the same edge. CalculiX (`gencontelem`) allows a distance of 1e-3
-/// times the root of the slave node's area.
-const PAST_ENDS: f64 = 2e-3;
-
 /// The contact law between a slave node and the surfaces that it may touch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Laws {
@@ -260,7 +256,7 @@ impl DeckObjects<'_> {
                 self.spec.surfaces.push(SurfaceSpec {
                     id: id.clone(),
                     along: format!("{MESH}.{id}"),
-                    past_ends: if by_nodes { PAST_ENDS } else { 0.0 },
+                    past_ends: (!by_nodes).then_some(0.0),
                     smooth,
                     cut,
                     ..SurfaceSpec::default()

@@ -4,7 +4,7 @@
 //! rejects invalid values. Every field is either required or has the default named in its comment.
 
 use super::arc::ArcSpec;
-use super::contact_law::{ContactLaw, FrictionSpec, is_zero};
+use super::contact_law::{ContactLaw, FrictionSpec};
 use super::described::Described;
 use super::described::macros::described;
 use super::given::{Cells, NodeSet, SideSet};
@@ -488,9 +488,10 @@ described! {
         pub endless: bool,
         /// Extend the surface past each of its ends by this part of its first or last element, on the same curve. A slave node in
         /// contact stays in contact up to there; a free node can come into contact up to half of that. Without an extension, a node
-        /// at an end of the surface leaves it with the smallest motion outward. Default: 0.
-        #[serde(default, skip_serializing_if = "is_zero")]
-        pub past_ends: f64,
+        /// at an end of the surface leaves it with the smallest motion outward. Default: 0.1 at an end with which a slave node
+        /// starts flush, 0.25 at an end on a line of symmetry that a slave node follows, and 0 at others.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub past_ends: Option<f64>,
         /// Use one smooth curve through all nodes of the chain, so that the normal does not jump between elements: a cubic from
         /// node to node, whose slope at a node is that of the parabola through the node and its two neighbours. Sharp corners are
         /// rounded too; where a corner is real, define two surfaces. Default: false, each element is a separate curve.
