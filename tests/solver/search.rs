@@ -5,6 +5,7 @@ use stickslip::linear::singular::Singular;
 use stickslip::scene::Scene;
 use stickslip::step::event::{Failure, Outcome};
 use stickslip::step::recovery::fallback::Fallback;
+use stickslip::step::state::Status;
 use stickslip::step::stepper::Stepper;
 
 /// A run: how it ends, the fallbacks by which an increment was accepted, accepted jumps, factorizations spent on searches, and the
@@ -95,6 +96,29 @@ fn with_its_tolerance_and_a_smooth_surface_the_bouncing_block_takes_fewer_iterat
 }
 
 const OFF: &[(&str, &str)] = &[("settings.search", "off")];
+
+/// A block of `elements` elements at this gap above a floor, pressed down by a traction of 10.
+fn above_a_floor(elements: usize, gap: f64) -> Stepper {
+    let text = format!(
+        "(title: \"t\", nodes: [Block(id: \"b\", corners: [(-5, {gap}), (5, {gap}), (5, 6), (-5, 6)], elements: ({elements}, 1)),
+                              Line(id: \"f\", from: (20, 0), to: (-20, 0), elements: 1, per_element: 2)],
+          materials: [Elastic(id: \"m\", E: 210000, nu: 0.3)], bodies: [Solid(id: \"b\", mesh: \"b\", material: \"m\")],
+          surfaces: [(id: \"f\", along: \"f\")], slaves: [(nodes: [\"b.bottom\"], on: [\"f\"])], friction: (angle: 10), supports: [],
+          loads: [Traction(along: \"b.top\", y: -10)], history: (path: [0, 1], increment: 0.1))"
+    );
+    let scene = Scene::from_text("t.ron", &text, &[]).unwrap_or_else(|error| panic!("{error}"));
+    Stepper::new(Arc::new(scene.model))
+}
+
+#[test]
+fn a_loose_body_with_many_contacts_starts_with_its_nearest_ones_closed() {
+    let mut stepper = above_a_floor(40, 0.01);
+    while stepper.step().is_some() {}
+    let state = stepper.state();
+    assert_eq!(state.status, Status::Finished);
+    let force: f64 = state.nodes.iter().map(|node| node.f_n).sum();
+    assert!((force - 100.0).abs() < 1e-6, "{force}");
+}
 
 #[test]
 fn bodies_that_touch_without_a_gap_are_held_from_the_start() {

@@ -211,14 +211,20 @@ impl Stepper {
 }
 
 impl Iterate {
-    /// Modes and T_max of the contacts that are not tied, at the start of the current major iteration.
+    /// Modes and T_max of the contacts that are not tied, at the start of the current major iteration. Without recorded minor
+    /// iterations, as when a diagnosis looks ahead, those of the state.
     fn brought(&self) -> Vec<AssumedMode> {
-        let first = self.state.major.minor_history.first(self.state.nodes.len());
-        first
-            .iter()
-            .zip(&self.model.contacts)
+        let state = &self.state;
+        let first = state.major.minor_history.first(state.nodes.len());
+        (self.model.contacts.iter().enumerate())
             .filter(|(_, slave)| !slave.bond.is_tied())
-            .map(|(input, _)| AssumedMode::from_mode(input.mode, input.t_max))
+            .map(|(contact, _)| match first.get(contact) {
+                Some(input) => AssumedMode::from_mode(input.mode, input.t_max),
+                None => {
+                    let node = &state.nodes[contact];
+                    AssumedMode::from_mode(node.mode, node.t_max)
+                }
+            })
             .collect()
     }
 

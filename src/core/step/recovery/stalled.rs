@@ -10,6 +10,9 @@ use crate::{Failure, Mode, Model, Singular, Source, State, SubIncrement};
 const SMALLEST_HALF: f64 = 1e-9;
 /// Maximum gap of a contact that is closed at the start if a body is loose, over the scene's length.
 const NEAR: f64 = 1e-4;
+/// If no gap is that small: how much larger than the smallest one the others may be, over the scene's length. Of a round body this
+/// closes more than one contact, which hold its rotation.
+const ALIKE: f64 = 5e-3;
 
 /// A failed increment.
 pub(in crate::step) struct FailedIncrement<'a> {
@@ -85,21 +88,24 @@ impl FailedIncrement<'_> {
             && strategy::needs_support(contacts, (0..contacts).filter(over).count())
     }
 
-    /// Free contacts whose gap is small.
+    /// Free contacts whose gap is small, or else those with about the smallest gap.
     pub fn near(&self) -> impl Iterator<Item = usize> {
-        let least = NEAR * self.model.length;
-        let closed = move |contact: usize| {
-            let over = self.source.kinematics(contact);
-            over.is_some_and(|over| over.gap.abs() <= least)
+        let gaps = || {
+            let nodes = self.state.start.nodes.iter().enumerate();
+            let free = nodes.filter(|(_, node)| node.mode == Mode::Free);
+            free.filter_map(|(contact, _)| {
+                Some((contact, self.source.kinematics(contact)?.gap.abs()))
+            })
         };
-        self.state
-            .start
-            .nodes
-            .iter()
-            .enumerate()
-            .filter(|(_, node)| node.mode == Mode::Free)
+        let least = gaps().fold(f64::INFINITY, |least, (_, gap)| least.min(gap));
+        let near = if least > NEAR * self.model.length {
+            least + ALIKE * self.model.length
+        } else {
+            NEAR * self.model.length
+        };
+        gaps()
+            .filter(move |(_, gap)| *gap <= near)
             .map(|(contact, _)| contact)
-            .filter(move |contact| closed(*contact))
     }
 
     /// Whether a damped motion may begin at the last equilibrium: none has begun there yet, and jumps are accepted.
