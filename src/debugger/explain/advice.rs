@@ -34,7 +34,16 @@ pub fn advice(model: &Model, state: &State, failure: &Failure, spec: Option<&Spe
         return reverse;
     }
     let ends = ending(model, state).into_iter().map(RemedyKind::PastEnds);
-    let rest = ends.chain(kinds(state, failure)).collect();
+    let mut kinked: Vec<usize> = state
+        .nodes
+        .iter()
+        .filter(|node| node.mode != Mode::Free && refines(failure))
+        .filter_map(|node| Some(node.spot?.surface))
+        .collect();
+    kinked.sort_unstable();
+    kinked.dedup();
+    let smooth = kinked.into_iter().map(RemedyKind::Smooth);
+    let rest = ends.chain(kinds(state, failure)).chain(smooth).collect();
     let finer = spec.filter(|_| refines(failure)).map(Remedy::finer);
     let (first, last) = match Remedy::law(model, state, failure) {
         Some((law, true)) => (Some(law), None),
@@ -169,7 +178,6 @@ pub(super) const START_TOUCHING: [&str; 2] = [
 pub(super) fn by_hand(state: &State, failure: &Failure) -> &'static [&'static str] {
     match failure {
         Failure::Cycle(_) => &[FORCE_THIRD_MODE],
-        Failure::MajorCycle(_) => &["replacing the kink by an arc, if it is a corner of the body"],
         Failure::NoAnswer { .. } => &[
             "other loads or friction",
             "a prescribed displacement instead of a load",
@@ -178,6 +186,7 @@ pub(super) fn by_hand(state: &State, failure: &Failure) -> &'static [&'static st
         | Failure::Refused(_)
         | Failure::NotFound(_)
         | Failure::MinorLimit { .. }
+        | Failure::MajorCycle(_)
         | Failure::MajorLimit { .. }
         | Failure::Diverged { .. } => &[],
         Failure::Singular(Singular::Rigid { .. }) => {

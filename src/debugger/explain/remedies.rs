@@ -367,7 +367,8 @@ pub fn rank(trial: &RemedyTrial) -> u8 {
 
 /// Order of two trials, best first: those that converged without violations, then those with violations, by size, then the
 /// others. Of those that converged, a change of the scene comes first, because only it removes a cause in the scene; then
-/// what lasts over later increments; then by cost.
+/// what lasts over later increments; then another mesh or curve, with which the load is passed, but later ones may fail as before; then
+/// by cost.
 pub fn compare(a: &RemedyTrial, b: &RemedyTrial) -> Ordering {
     let worst = |trial: &RemedyTrial| trial.left.map_or(0.0, |left| left.worst);
     let by_size = match (rank(a), rank(b)) {
@@ -376,7 +377,11 @@ pub fn compare(a: &RemedyTrial, b: &RemedyTrial) -> Ordering {
     };
     let lasts = |trial: &RemedyTrial| match (rank(trial), &trial.how) {
         (2, _) => 0,
-        (_, RemedyInput::Restart(_)) => 0,
+        (_, RemedyInput::Restart(changes)) => {
+            let is_other =
+                |(path, _): &(String, String)| path == "refine" || path.ends_with(".smooth");
+            if changes.iter().any(is_other) { 2 } else { 0 }
+        }
         (
             _,
             RemedyInput::Set(..)
@@ -384,7 +389,7 @@ pub fn compare(a: &RemedyTrial, b: &RemedyTrial) -> Ordering {
             | RemedyInput::Increment(_)
             | RemedyInput::IncrementOn(..),
         ) => 1,
-        (_, RemedyInput::StartFrom(_) | RemedyInput::Listed) => 2,
+        (_, RemedyInput::StartFrom(_) | RemedyInput::Listed) => 3,
     };
     (rank(a).cmp(&rank(b)))
         .then(by_size)

@@ -43,6 +43,8 @@ pub enum RemedyKind {
     Reverse(usize),
     /// The surface with this number continued past its ends; tried from the start of the scene.
     PastEnds(usize),
+    /// The surface with this number as a smooth curve; tried from the start of the scene.
+    Smooth(usize),
     /// Another treatment of increments that jump to another branch; tried from the start of the scene.
     Jumps(&'static str, &'static str),
     /// Every generated element divided in two; tried from the start of the scene.
@@ -219,15 +221,23 @@ impl Remedy {
             RemedyKind::Reverse(surface) => {
                 let name = &model.surfaces.get(surface)?.name;
                 let label = format!("reverse surface {name}");
-                let how = restarted(&format!("surfaces.{name}.reverse"), "true");
+                let how = of_surface(model, name, "reverse", "true");
                 Some(remedy(&label, how, Vec::new()))
             }
             RemedyKind::PastEnds(surface) => {
                 let surface = model.surfaces.get(surface)?;
                 let name = &surface.name;
                 let label = format!("continue surface {name} past its ends");
-                let how = restarted(&format!("surfaces.{name}.past_ends"), "0.5");
-                (surface.past_ends == [0.0; 2]).then(|| remedy(&label, how, Vec::new()))
+                let how = of_surface(model, name, "past_ends", "0.5");
+                let ends = surface.past_ends.contains(&0.0);
+                ends.then(|| remedy(&label, how, Vec::new()))
+            }
+            RemedyKind::Smooth(surface) => {
+                let surface = model.surfaces.get(surface)?;
+                let label = format!("surface {} without kinks", surface.name);
+                let how = of_surface(model, &surface.name, "smooth", "true");
+                let has_kinks = surface.smooth.is_empty() && surface.elements.len() > 1;
+                has_kinks.then(|| remedy(&label, how, Vec::new()))
             }
             RemedyKind::Gaps(gaps) => {
                 // Only the first increment starts with the overlap.
@@ -343,6 +353,19 @@ impl Remedy {
 /// What to type for a value that is set from the start of the scene.
 fn restarted(path: &str, value: &str) -> RemedyInput {
     RemedyInput::Restart(vec![(path.to_owned(), value.to_owned())])
+}
+
+/// A changed field of a surface, or of the scene's surface of which it is a piece, `ID.1`, `ID.2`, ….
+fn of_surface(model: &Model, name: &str, field: &str, value: &str) -> RemedyInput {
+    let pieces = |id: &str| {
+        let has = |piece: &str| model.surfaces.iter().any(|s| s.name == piece);
+        has(&format!("{id}.1")) && has(&format!("{id}.2"))
+    };
+    let id = match name.rsplit_once('.') {
+        Some((id, _)) if pieces(id) => id,
+        _ => name,
+    };
+    restarted(&format!("surfaces.{id}.{field}"), value)
 }
 
 /// Initial modes to restart the increment with: for the nodes on their surface, or else for the closest one.
