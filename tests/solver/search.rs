@@ -98,13 +98,13 @@ fn with_its_tolerance_and_a_smooth_surface_the_bouncing_block_takes_fewer_iterat
 const OFF: &[(&str, &str)] = &[("settings.search", "off")];
 
 /// A block of `elements` elements at this gap above a floor, pressed down by a traction of 10.
-fn above_a_floor(elements: usize, gap: f64) -> Stepper {
+fn above_a_floor(elements: usize, gap: f64, strategy: &str) -> Stepper {
     let text = format!(
         "(title: \"t\", nodes: [Block(id: \"b\", corners: [(-5, {gap}), (5, {gap}), (5, 6), (-5, 6)], elements: ({elements}, 1)),
                               Line(id: \"f\", from: (20, 0), to: (-20, 0), elements: 1, per_element: 2)],
           materials: [Elastic(id: \"m\", E: 210000, nu: 0.3)], bodies: [Solid(id: \"b\", mesh: \"b\", material: \"m\")],
           surfaces: [(id: \"f\", along: \"f\")], slaves: [(nodes: [\"b.bottom\"], on: [\"f\"])], friction: (angle: 10), supports: [],
-          loads: [Traction(along: \"b.top\", y: -10)], history: (path: [0, 1], increment: 0.1))"
+          loads: [Traction(along: \"b.top\", y: -10)], history: (path: [0, 1], increment: 0.1), settings: (strategy: {strategy}))"
     );
     let scene = Scene::from_text("t.ron", &text, &[]).unwrap_or_else(|error| panic!("{error}"));
     Stepper::new(Arc::new(scene.model))
@@ -112,12 +112,25 @@ fn above_a_floor(elements: usize, gap: f64) -> Stepper {
 
 #[test]
 fn a_loose_body_with_many_contacts_starts_with_its_nearest_ones_closed() {
-    let mut stepper = above_a_floor(40, 0.01);
+    let mut stepper = above_a_floor(40, 0.01, "ladder");
     while stepper.step().is_some() {}
     let state = stepper.state();
     assert_eq!(state.status, Status::Finished);
     let force: f64 = state.nodes.iter().map(|node| node.f_n).sum();
     assert!((force - 100.0).abs() < 1e-6, "{force}");
+}
+
+/// The diagnosis looks ahead from the failed state, whose minor iterations are no longer recorded.
+#[test]
+fn a_look_ahead_from_a_failed_search_finds_no_cycle() {
+    let mut stepper = above_a_floor(100, 0.1, "lemke");
+    while let Some(event) = stepper.step() {
+        if matches!(event.outcome, Outcome::Failed(_)) {
+            break;
+        }
+    }
+    assert!(matches!(stepper.state().status, Status::Failed(_)));
+    assert_eq!(stepper.cycle_ahead(), None);
 }
 
 #[test]
