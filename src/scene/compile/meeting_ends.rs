@@ -162,6 +162,9 @@ pub(super) fn divide(
     layout: &Layout,
     length: f64,
 ) {
+    if slaves.iter().all(|slave| slave.surfaces.len() < 2) {
+        return;
+    }
     let places: Vec<Node> = names.nodes.clone();
     let end_at = |node: usize, surface: usize| {
         let ends = end_nodes(&surfaces[surface].elements);

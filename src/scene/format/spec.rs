@@ -488,8 +488,8 @@ described! {
         pub endless: bool,
         /// Extend the surface past each of its ends by this part of its first or last element, on the same curve. A slave node in
         /// contact stays in contact up to there; a free node can come into contact up to half of that. Without an extension, a node
-        /// at an end of the surface leaves it with the smallest motion outward. Default: 0.1 at an end with which a slave node
-        /// starts flush, 0.25 at an end on a line of symmetry that a slave node follows, and 0 at others.
+        /// at an end of the surface leaves it with the smallest motion outward. Default: 0.1 at an end with which a slave
+        /// surface ends too, 0.25 at an end on a line of symmetry that a slave node follows, and 0 at others.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub past_ends: Option<f64>,
         /// Use one smooth curve through all nodes of the chain, so that the normal does not jump between elements: a cubic from
